@@ -8,30 +8,33 @@
 
 namespace realcam {
 
-/// Called by long tasks at least every tenth of a second, on the thread that started them; if it returns false, the
-/// task ends by throwing Cancelled. Empty: the task is never stopped.
+/// Callback by which the caller of a long task can stop it. The task calls it at least every tenth of a second, on the
+/// thread that started the task; if it returns false, the task throws Cancelled. An empty function never stops the
+/// task.
 using KeepGoing = std::function<bool()>;
 
-/// Asks the caller of a long task, about fifty times a second, whether to go on.
+/// Calls the KeepGoing of a long task about fifty times a second. The task reports its work in small units.
 class Checkpoint {
 public:
-    /// An empty function never stops the task.
     explicit Checkpoint(KeepGoing keep_going = {}) : keep_going_(std::move(keep_going)) {}
 
-    /// Reports work done; a unit takes a few nanoseconds to a microsecond. Throws Cancelled if the caller wants to
-    /// stop.
+    /// Reports `work` units of completed work; a unit takes a few nanoseconds to a microsecond. Throws Cancelled if
+    /// KeepGoing returns false.
     void pass(std::size_t work = 1);
 
 private:
     using Clock = std::chrono::steady_clock;
+    /// Units of work between two readings of the clock, which take longer than a unit.
     static constexpr std::size_t kWorkBetweenClocks = 1 << 14;
-    static constexpr std::chrono::milliseconds kBetweenQuestions{20};
+    /// Time between two calls of KeepGoing.
+    static constexpr std::chrono::milliseconds kTimeBetweenCalls{20};
 
-    void look_at_clock();
+    /// Calls KeepGoing if it is time.
+    void read_clock();
 
     KeepGoing keep_going_;
-    std::size_t work_ = 0;
-    Clock::time_point last_ = Clock::now();
+    std::size_t work_ = 0;  ///< since the last reading of the clock
+    Clock::time_point last_call_ = Clock::now();
 };
 
 }  // namespace realcam

@@ -22,11 +22,12 @@ public:
     LensFileError(const std::string& message, std::string file = {}, int line = 0, int surface = 0);
 
     std::string detail;  ///< the message without file, line and surface
-    std::string file;
-    int line;
-    int surface;
+    std::string file;    ///< path or name of the lens file; empty if unknown
+    int line;            ///< 1-based line of the file; 0 if unknown
+    int surface;         ///< 1-based surface of the lens; 0 if unknown
 
 private:
+    /// Returns the beginning of the message: "file:line: surface 3: ", with the parts that are known.
     static std::string location(const std::string& file, int line, int surface);
 };
 
@@ -40,21 +41,22 @@ class ImageFileError : public Error {
     using Error::Error;
 };
 
-/// The caller stopped a long task.
+/// A long task was stopped by its caller (KeepGoing).
 class Cancelled : public Error {
 public:
     Cancelled() : Error("stopped") {}
 };
 
-/// Failure of a device or of its library.
+/// Failure of a CPU or GPU backend, or of the library that it uses.
 class DeviceError : public Error {
     using Error::Error;
 };
 
-/// The system has no more threads to give, or no memory for their stacks.
+/// A thread could not be started: the system's limit of threads is reached, or there is no memory for another stack.
 class NoThread : public DeviceError {
 public:
-    NoThread() : DeviceError("the system starts no thread; allow more memory (ulimit -v) or threads (ulimit -u)") {}
+    NoThread()
+        : DeviceError("the system could not start a thread; allow more memory (ulimit -v) or threads (ulimit -u)") {}
 };
 
 }  // namespace realcam

@@ -8,8 +8,10 @@
 namespace realcam {
 namespace {
 
+/// Notation of printf: %g, %e or %f.
 enum class Notation { general, exponent, fixed };
 
+/// Formats a number with printf. `digits`: its precision argument.
 std::string printed(Notation notation, int digits, double value) {
     char text[64];
     switch (notation) {
@@ -24,18 +26,18 @@ std::string printed(Notation notation, int digits, double value) {
 
 std::string number_text(double value, int digits) {
     if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
-    const double size = std::fabs(value);
-    if (std::isnan(value) || (0 < size && size < 1e-6) || size >= 1e15)
+    const double magnitude = std::fabs(value);
+    if (std::isnan(value) || (0 < magnitude && magnitude < 1e-6) || magnitude >= 1e15)
         return printed(Notation::general, digits, value);
-    // Rounded first, because 999.96 has three digits before the point and 1000 four.
-    const double shown = rounded(size, digits);
+    // The exponent is that of the rounded number: 999.96 has three digits before the point, but is shown as 1000.
+    const double shown = rounded(magnitude, digits);
     const int exponent = shown > 0 ? static_cast<int>(std::floor(std::log10(shown))) : 0;
-    std::string text = printed(Notation::fixed, std::max(0, digits - 1 - exponent), size);
+    std::string text = printed(Notation::fixed, std::max(0, digits - 1 - exponent), magnitude);
     if (text.find('.') != std::string::npos) {
         text.erase(text.find_last_not_of('0') + 1);
         if (text.back() == '.') text.pop_back();
     }
-    if (exponent >= 4)
+    if (exponent >= 4)  // spaces between groups of three digits
         for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(std::min(text.find('.'), text.size())) - 3; at > 0;
              at -= 3)
             text.insert(static_cast<std::size_t>(at), 1, ' ');

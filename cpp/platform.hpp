@@ -13,8 +13,8 @@
 #define REALCAM_HD
 #endif
 
-// Small functions that run once per ray and surface. Inlining is part of their contract: a call inside a lane
-// loop would stop the loop from becoming vector code.
+// Small functions that run once per ray and surface. Inlining is part of their contract: a call inside a lane loop
+// would stop the loop from becoming vector code.
 #if defined(__GNUC__)
 #define REALCAM_INLINE REALCAM_HD inline __attribute__((always_inline))
 #else
@@ -50,9 +50,9 @@
 #define REALCAM_NO_UNROLL
 #endif
 
-// A translation unit that is built for one instruction set defines REALCAM_ISA (v2, v3, v4). The whole core then
-// lives in an inline namespace of that name, so that no inline function compiled with AVX-512 can be the copy that
-// the linker keeps for a machine without it.
+// A translation unit that is built for one instruction set defines REALCAM_ISA (v2, v3, v4). The whole core then lives
+// in an inline namespace of that name, so that no inline function compiled with AVX-512 can be the copy that the linker
+// keeps for a machine without it.
 #if defined(REALCAM_ISA)
 #define REALCAM_NAMESPACE realcam::inline REALCAM_ISA
 #else
@@ -66,7 +66,7 @@ namespace REALCAM_NAMESPACE {
 // a ray. These take the same steps without them: an approximation, and a Newton step on the residual. Outside that
 // range they are inaccurate, and infinity becomes NaN.
 
-/// Returns the square root, or 0 (on a GPU 2^-51) for negative numbers and NaN. The caller tests the argument itself.
+/// Returns the square root, or 0 (on a GPU about 2^-51) for negative numbers and NaN, which the caller must test for.
 REALCAM_INLINE float sqrt_or_zero(float v) {
 #if defined(__CUDA_ARCH__)
     v = fmaxf(v, 0x1p-101f);
@@ -82,6 +82,7 @@ REALCAM_INLINE double sqrt_or_zero(double v) {
     return std::sqrt(v > 0.0 ? v : 0.0);
 }
 
+/// Returns the quotient of two numbers.
 REALCAM_INLINE float quotient(float numerator, float denominator) {
 #if defined(__CUDA_ARCH__)
     float inverse;
@@ -97,6 +98,7 @@ REALCAM_INLINE double quotient(double numerator, double denominator) {
     return numerator / denominator;
 }
 
+/// Returns the 32 bits in reverse order.
 REALCAM_INLINE unsigned reverse_bits(unsigned v) {
 #if defined(__CUDA_ARCH__)
     return __brev(v);
@@ -108,6 +110,7 @@ REALCAM_INLINE unsigned reverse_bits(unsigned v) {
 #endif
 }
 
+/// Returns the number of bits that are set.
 REALCAM_INLINE unsigned count_bits(unsigned v) {
 #if defined(__CUDA_ARCH__)
     return static_cast<unsigned>(__popc(static_cast<int>(v)));
@@ -123,7 +126,7 @@ inline constexpr bool kIsDeviceCode = true;
 inline constexpr bool kIsDeviceCode = false;
 #endif
 
-/// Sets bits of a word, which other threads may do at the same time on a GPU, but not on a CPU.
+/// Sets bits of the word `*to`. On a GPU, but not on a CPU, other threads may do so at the same time.
 REALCAM_INLINE void add_bits(unsigned* to, unsigned bits) {
 #if defined(__CUDA_ARCH__)
     atomicOr(to, bits);
@@ -132,7 +135,7 @@ REALCAM_INLINE void add_bits(unsigned* to, unsigned bits) {
 #endif
 }
 
-/// Loads from memory that nobody writes while the kernel runs, 128 bits at a time.
+/// Returns a value from memory that is not written while the kernel runs; a GPU loads 128 bits at a time.
 template <class T>
 REALCAM_INLINE T load_constant(const T* from) {
     static_assert(sizeof(T) % 16 == 0 && alignof(T) == 16);
@@ -148,10 +151,12 @@ REALCAM_INLINE T load_constant(const T* from) {
 #endif
 }
 
+/// Bits of the float 32768.
 inline constexpr std::uint32_t kBitsOf32768 = 0x47000000u;
 
-/// Returns 32768 + byte `index` (from the lowest) of a word, exactly: one permutation of bytes instead of a shift, a
-/// mask and a conversion, for which GPUs have few units. `bits_of_32768` is kBitsOf32768.
+/// Returns 32768 + byte `index` (0: the lowest) of a word, exactly: the byte is inserted into the mantissa of the
+/// float. On a GPU this is one permutation of bytes instead of a shift, a mask and a conversion, for which it has few
+/// units. `bits_of_32768` must be kBitsOf32768.
 REALCAM_INLINE float byte_above_32768(std::uint32_t word, unsigned index, std::uint32_t bits_of_32768) {
 #if defined(__CUDA_ARCH__)
     return __uint_as_float(__byte_perm(word, bits_of_32768, 0x7604u | index << 4));
@@ -160,7 +165,8 @@ REALCAM_INLINE float byte_above_32768(std::uint32_t word, unsigned index, std::u
 #endif
 }
 
-// Positive floats are ordered as their bits are. On integers, Hopper takes the largest of four in one instruction.
+// Positive floats have the same order as their bits, read as integers. Hopper GPUs compute the maximum of three
+// integers and 0, or the minimum of three, in one instruction.
 
 /// Returns the largest of three floats and 0. The floats are not NaN.
 REALCAM_INLINE float largest_or_zero(float a, float b, float c) {
@@ -172,7 +178,7 @@ REALCAM_INLINE float largest_or_zero(float a, float b, float c) {
 #endif
 }
 
-/// Returns the smallest of four floats, which are not NaN; if some are negative, any of these.
+/// Returns the smallest of four floats, which are not NaN. If any are negative, returns one of the negative ones.
 REALCAM_INLINE float smallest_if_positive(float a, float b, float c, float d) {
 #if defined(__CUDA_ARCH__)
     const int abc = __vimin3_s32(__float_as_int(a), __float_as_int(b), __float_as_int(c));
@@ -184,7 +190,7 @@ REALCAM_INLINE float smallest_if_positive(float a, float b, float c, float d) {
 #endif
 }
 
-/// Shifts the bits up by one and appends the sign of v.
+/// Returns `bits` shifted left by one, with the sign bit of v (1 if negative) as the lowest bit.
 REALCAM_INLINE unsigned append_sign(unsigned bits, float v) {
 #if defined(__CUDA_ARCH__)
     return __funnelshift_l(__float_as_uint(v), bits, 1);

@@ -9,8 +9,9 @@
 
 namespace realcam {
 
-/// Function table of the CUDA backend if it is a plug-in, a library of its own. C++ objects and exceptions of the core
-/// cross this border, so both sides must be compiled from the same headers, which cuda_backend_stamp verifies.
+/// Functions of the CUDA backend, for builds in which it is a plug-in (a library of its own). C++ objects and
+/// exceptions of the core cross the border of the library, so that both sides must be compiled from the same headers,
+/// which cuda_backend_stamp verifies. Each member is the function of the same name.
 struct CudaBackend {
     decltype(&realcam::cuda_devices) cuda_devices;
     decltype(&realcam::why_no_cuda_device) why_no_cuda_device;
@@ -34,7 +35,7 @@ struct CudaHost {
     decltype(&realcam::bvh_instances) bvh_instances;
 };
 
-/// Version and a hash of all headers. Defined by cmake/RealcamCudaStamp.cmake.
+/// Returns the version of realcam and a hash of all headers. Defined by cmake/RealcamCudaStamp.cmake.
 const char* cuda_backend_stamp();
 
 /// The two exported functions of the plug-in and their symbol names. The second is called only if the stamps are equal;

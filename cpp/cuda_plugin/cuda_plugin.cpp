@@ -1,9 +1,11 @@
-// The CUDA backend as a library of its own: what it shows, and what it has from the program that loads it.
+// The CUDA backend as a library of its own (plug-in): the functions that it exports, and stand-ins for the functions
+// that it calls in the program which loads it.
 #include "../cuda/cuda_backend.hpp"
 
 namespace realcam {
 namespace {
 
+/// Functions of the program that has loaded the plug-in; set by realcam_cuda_backend.
 const CudaHost* host = nullptr;
 
 constexpr CudaBackend kBackend = {

@@ -15,9 +15,9 @@
 namespace realcam {
 namespace {
 
-constexpr std::size_t kPixelBytes = 3 * sizeof(float);
+constexpr std::size_t kPixelBytes = 3 * sizeof(float);  ///< size of a pixel in the library's images
 
-/// Owning handle, released through its library.
+/// Owning handle of an object of Open Image Denoise.
 template <class Handle>
 class Owned {
 public:
@@ -36,7 +36,7 @@ private:
 
 /// Least width and height in pixels: the network reads a neighbourhood of this size, and changes the light of smaller
 /// pictures.
-constexpr int kLeastSide = 16;
+constexpr int kMinSide = 16;
 
 /// Crops a picture of three floats per pixel to a size, or extends it by repeating its edge pixels.
 std::vector<float> resized(const float* values, int width, int height, int to_width, int to_height) {
@@ -63,6 +63,7 @@ std::optional<int> gpu_of(const oidn::Library& library, const std::string& devic
 
 }  // namespace
 
+/// The library, its device, and the filters for the last picture size.
 struct Denoiser::Parts {
     Parts(const std::string& device_name, int threads, const std::string& path)
         : library(oidn::library(path)),
@@ -77,24 +78,28 @@ struct Denoiser::Parts {
         check();
     }
 
+    /// Creates the device: the GPU or the CPU.
     oidn::Device new_device() const {
-        const oidn::Stream of_the_device = nullptr;
-        const oidn::Device made =
-            gpu ? library.new_cuda_device(&*gpu, &of_the_device, 1) : library.new_device(oidn::kCpu);
-        if (!made) check(nullptr);
-        return made;
+        const oidn::Stream default_stream = nullptr;
+        const oidn::Device created =
+            gpu ? library.new_cuda_device(&*gpu, &default_stream, 1) : library.new_device(oidn::kCpu);
+        if (!created) check(nullptr);
+        return created;
     }
 
+    /// Throws Cancelled or DeviceError if the library has reported an error.
     void check() const { check(device); }
-    void check(oidn::Device of) const {
+    /// check() for a device. Null: throws the error of creating one.
+    void check(oidn::Device device_or_null) const {
         const char* message = nullptr;
-        const int error = library.get_device_error(of, &message);
+        const int error = library.get_device_error(device_or_null, &message);
         if (error == oidn::kCancelled) throw Cancelled();
-        if (error != 0 || !of)
+        if (error != 0 || !device_or_null)
             throw DeviceError(std::string("Open Image Denoise: ") + (message ? message : "no device"));
     }
 
-    /// Filters and buffers for one picture size and quality. Making them takes as long as denoising a small picture.
+    /// Filters and buffers for one picture size and quality. They are reused, because creating them takes as long as
+    /// denoising a small picture.
     struct Filters {
         Filters(const Parts& parts, int width, int height, DenoiseQuality quality)
             : width(width),
@@ -111,7 +116,8 @@ struct Denoiser::Parts {
                     layers.push_back(parts.filter());
                     set(parts, layers.back(), name, *image);
                     set(parts, layers.back(), "output", *image);
-                    // kHigh takes more than twice the time, and the picture is no closer to the converged one.
+                    // kHigh takes more than twice the time for the layers, and brings the denoised picture no closer to
+                    // the converged one.
                     parts.library.set_filter_int(layers.back(), "quality", oidn::kBalanced);
                     parts.library.commit_filter(layers.back());
                 }
@@ -129,6 +135,7 @@ struct Denoiser::Parts {
         std::size_t bytes() const {
             return kPixelBytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
         }
+        /// Sets a buffer as an image of a filter.
         void set(const Parts& parts, oidn::Filter filter, const char* name, oidn::Buffer buffer) const {
             parts.library.set_filter_image(filter, name, buffer, oidn::kFloat3, static_cast<std::size_t>(width),
                                            static_cast<std::size_t>(height), 0, 0, 0);
@@ -137,40 +144,45 @@ struct Denoiser::Parts {
         int width, height;
         DenoiseQuality quality;
         Owned<oidn::Buffer> color, albedo, normal, output;
+        /// Filters that denoise albedo and normal in place; empty for DenoiseQuality::fast.
         std::vector<Owned<oidn::Filter>> layers;
         Owned<oidn::Filter> picture;
     };
 
+    /// Creates a buffer.
     Owned<oidn::Buffer> buffer(std::size_t bytes) const {
-        Owned<oidn::Buffer> made(library.new_buffer(device, bytes), library.release_buffer);
+        Owned<oidn::Buffer> created(library.new_buffer(device, bytes), library.release_buffer);
         check();
-        return made;
+        return created;
     }
+    /// Creates a filter for path-traced pictures ("RT").
     Owned<oidn::Filter> filter() const {
-        Owned<oidn::Filter> made(library.new_filter(device, "RT"), library.release_filter);
+        Owned<oidn::Filter> created(library.new_filter(device, "RT"), library.release_filter);
         check();
-        return made;
+        return created;
     }
 
+    /// Returns the filters for a size and quality, and creates them if they differ from the last ones.
     const Filters& filters_for(int width, int height, DenoiseQuality quality) {
         if (!filters || filters->width != width || filters->height != height || filters->quality != quality) {
-            filters.reset();  // frees their memory before the next are made
+            filters.reset();  // frees their memory before the next are created
             filters = std::make_unique<Filters>(*this, width, height, quality);
         }
         return *filters;
     }
 
-    void execute(oidn::Filter filter, std::atomic<bool>& stop, bool heeds) const {
-        const auto goes_on = [](void* stopped, double) { return !*static_cast<std::atomic<bool>*>(stopped); };
+    /// Runs a filter. `can_stop`: true if it is stopped when `stop` becomes true.
+    void execute(oidn::Filter filter, std::atomic<bool>& stop, bool can_stop) const {
+        const auto continues = [](void* stopped, double) { return !*static_cast<std::atomic<bool>*>(stopped); };
         // A progress monitor costs time on a GPU.
-        library.set_filter_monitor(filter, heeds ? oidn::Monitor(goes_on) : nullptr, &stop);
+        library.set_filter_monitor(filter, can_stop ? oidn::Monitor(continues) : nullptr, &stop);
         library.commit_filter(filter);
         library.execute_filter(filter);
         check();
     }
 
     const oidn::Library& library;
-    std::optional<int> gpu;
+    std::optional<int> gpu;  ///< ordinal; std::nullopt: the CPU
     Owned<oidn::Device> device;
     std::unique_ptr<Filters> filters;
 };
@@ -188,7 +200,7 @@ std::string Denoiser::name() const {
 
 std::vector<float> Denoiser::denoised(const NoisyPicture& picture, DenoiseQuality quality,
                                       const KeepGoing& keep_going) {
-    if (const int width = std::max(picture.width, kLeastSide), height = std::max(picture.height, kLeastSide);
+    if (const int width = std::max(picture.width, kMinSide), height = std::max(picture.height, kMinSide);
         width != picture.width || height != picture.height) {
         const auto larger = [&](const float* values) {
             return resized(values, picture.width, picture.height, width, height);
@@ -207,39 +219,39 @@ std::vector<float> Denoiser::denoised(const NoisyPicture& picture, DenoiseQualit
         library.write_buffer(filters.color, 0, filters.bytes(), picture.exposure);
         library.write_buffer(filters.albedo, 0, filters.bytes(), picture.albedo);
         library.write_buffer(filters.normal, 0, filters.bytes(), picture.normal);
-        const bool heeds = static_cast<bool>(keep_going);
-        for (const oidn::Filter layer : filters.layers) parts_->execute(layer, stop, heeds);
-        parts_->execute(filters.picture, stop, heeds);
+        const bool can_stop = static_cast<bool>(keep_going);
+        for (const oidn::Filter layer : filters.layers) parts_->execute(layer, stop, can_stop);
+        parts_->execute(filters.picture, stop, can_stop);
         library.read_buffer(filters.output, 0, filters.bytes(), result.data());
         parts_->check();
     };
-    run_heeding(work, keep_going, stop);
+    run_interruptibly(work, keep_going, stop);
     if (stop) throw Cancelled();
     for (float& value : result) value = std::max(value, 0.0f);
     return result;
 }
 
-void denoise(Image& image, LayerSet wanted, Denoiser& denoiser, const KeepGoing& keep_going) {
+void denoise(Image& image, LayerSet kept, Denoiser& denoiser, const KeepGoing& keep_going) {
     const auto values_of = [&](Layer layer) {
-        const auto is_it = [&](const LayerImage& other) { return other.layer == layer; };
-        return std::find_if(image.layers.begin(), image.layers.end(), is_it)->values.data();
+        const auto matches = [&](const LayerImage& other) { return other.layer == layer; };
+        return std::find_if(image.layers.begin(), image.layers.end(), matches)->values.data();
     };
-    // Light traced from lamps is not denoised: lamps out of focus are discs, and their noise is fine grain, which a
-    // network takes for detail and spreads.
+    // Light traced from lamps is not denoised: the noise of lamps out of focus is a fine grain in their discs, which
+    // the network mistakes for detail and spreads.
     const float* traced = values_of(Layer::traced_light);
-    std::vector<float> rest(image.exposure.begin(), image.exposure.end());
-    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = std::max(rest[i] - traced[i], 0.0f);
-    std::vector<float> denoised =
-        denoiser.denoised({image.width, image.height, rest.data(), values_of(Layer::albedo), values_of(Layer::normal)},
-                          DenoiseQuality::high, keep_going);
-    // Pixels dominated by traced light keep their noise: it is invisible beside the lamp, and part of it is the lamp's
-    // light.
-    for (std::size_t i = 0; i < rest.size(); ++i) {
+    std::vector<float> pixel_light(image.exposure.begin(), image.exposure.end());
+    for (std::size_t i = 0; i < pixel_light.size(); ++i) pixel_light[i] = std::max(pixel_light[i] - traced[i], 0.0f);
+    std::vector<float> denoised = denoiser.denoised(
+        {image.width, image.height, pixel_light.data(), values_of(Layer::albedo), values_of(Layer::normal)},
+        DenoiseQuality::high, keep_going);
+    // The larger the fraction of traced light in a pixel, the less of its other light is replaced by the denoised one:
+    // the noise is invisible beside the lamp, and part of that light is the lamp's own, found by pixel samples.
+    for (std::size_t i = 0; i < pixel_light.size(); ++i) {
         const float all = traced[i] + denoised[i], share = all > 0 ? traced[i] / all : 0;
-        denoised[i] += share * (rest[i] - denoised[i]) + traced[i];
+        denoised[i] += share * (pixel_light[i] - denoised[i]) + traced[i];
     }
     image.exposure = PictureFloats(std::move(denoised));
-    keep_layers(image, wanted);
+    keep_layers(image, kept);
     // These layers describe the noise or contain it.
     constexpr LayerSet kNoisy = {Layer::variance, Layer::dual_pixel_left, Layer::dual_pixel_right};
     std::erase_if(image.layers, [&](const LayerImage& layer) { return kNoisy.has(layer.layer); });

@@ -8,20 +8,21 @@
 
 namespace realcam {
 
+/// Method of denoising.
 enum class DenoiseQuality {
-    high,  ///< denoises the guide layers first, then the picture with them
-    fast,  ///< denoises the picture with noisy guide layers: for previews
+    high,  ///< denoises albedo and normals first, then the picture with their help
+    fast,  ///< denoises the picture with noisy albedo and normals; for previews
 };
 
 /// Input of Open Image Denoise: three floats per pixel in each array, row by row.
 struct NoisyPicture {
     int width, height;
-    const float* exposure;  ///< linear, not negative
-    const float* albedo;    ///< 0 to 1
-    const float* normal;    ///< -1 to 1
+    const float* exposure;  ///< linear RGB of any scale, not negative
+    const float* albedo;    ///< RGB, 0 to 1
+    const float* normal;    ///< x, y, z in any frame, -1 to 1
 };
 
-/// Denoiser that uses Intel's Open Image Denoise. Not to be used by two threads at once.
+/// Denoiser that uses Intel's Open Image Denoise. Two threads must not use it at once.
 class Denoiser {
 public:
     /// `library`: see oidn::library. `device`: a name as for make_session; of several GPUs the first is used, and
@@ -35,8 +36,8 @@ public:
     /// Returns the library's name and version, for display and for the metadata of pictures.
     std::string name() const;
 
-    /// Returns the denoised exposure. Throws DeviceError if the library fails, and Cancelled if `keep_going` returns
-    /// false.
+    /// Returns the denoised exposure, three floats per pixel. Throws DeviceError if the library fails, and Cancelled if
+    /// `keep_going` returns false.
     std::vector<float> denoised(const NoisyPicture& picture, DenoiseQuality quality, const KeepGoing& keep_going = {});
 
 private:
@@ -45,8 +46,8 @@ private:
 };
 
 /// Denoises the exposure of a picture that has all kDenoiserLayers, except for the light that was traced from lamps.
-/// Removes the layers that are not `wanted`, and those that describe or contain the noise (variance, dual pixels).
+/// Removes the layers that are not in `kept`, and those that describe or contain the noise (variance, dual pixels).
 /// Throws as Denoiser.
-void denoise(Image& image, LayerSet wanted, Denoiser& denoiser, const KeepGoing& keep_going);
+void denoise(Image& image, LayerSet kept, Denoiser& denoiser, const KeepGoing& keep_going);
 
 }  // namespace realcam

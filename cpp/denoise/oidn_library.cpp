@@ -11,24 +11,30 @@
 namespace realcam::oidn {
 namespace {
 
-constexpr const char* kOfTheSystem = "libOpenImageDenoise.so.2";
+/// Name by which the dynamic loader finds an installed library.
+constexpr const char* kSystemLibrary = "libOpenImageDenoise.so.2";
 
+/// Throws InputError with the reason why the library cannot be used.
 [[noreturn]] void fail(const std::string& why) {
-    throw InputError("Open Image Denoise is not installed (" + why +
-                     "); pip install realcam[denoise] brings it, or REALCAM_OIDN names its libOpenImageDenoise.so");
+    throw InputError(
+        "Open Image Denoise is not installed (" + why +
+        "); install it with pip install realcam[denoise], or set REALCAM_OIDN to the path of libOpenImageDenoise.so");
 }
 
+/// Returns the last error of the dynamic loader.
 std::string last_error() {
     const char* error = dlerror();
     return error ? error : "no reason is given";
 }
 
+/// Sets `function` to the function of this name. Throws InputError if it is missing.
 template <class F>
 void find(void* handle, const char* name, F*& function) {
     function = reinterpret_cast<F*>(dlsym(handle, name));
     if (!function) fail(last_error());
 }
 
+/// Loads the library at a path. Throws InputError.
 Library loaded(const std::string& path) {
     void* const handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) fail(last_error());
@@ -57,10 +63,11 @@ Library loaded(const std::string& path) {
     return l;
 }
 
+/// Returns `path` or, if it is empty, the value of REALCAM_OIDN or the name of the system's library.
 std::string path_or_default(const std::string& path) {
     if (!path.empty()) return path;
     const char* named = std::getenv("REALCAM_OIDN");
-    return named && *named ? named : kOfTheSystem;
+    return named && *named ? named : kSystemLibrary;
 }
 
 }  // namespace
@@ -68,10 +75,11 @@ std::string path_or_default(const std::string& path) {
 const Library& library(const std::string& path) {
     static std::mutex mutex;
     static auto* const libraries = new std::map<std::string, Library>;  // never freed: their threads may outlive main
-    const std::string wanted = path_or_default(path);
+    const std::string path_or_name = path_or_default(path);
     const std::lock_guard lock(mutex);
-    const auto known = libraries->find(wanted);
-    return known != libraries->end() ? known->second : libraries->emplace(wanted, loaded(wanted)).first->second;
+    const auto known = libraries->find(path_or_name);
+    return known != libraries->end() ? known->second
+                                     : libraries->emplace(path_or_name, loaded(path_or_name)).first->second;
 }
 
 }  // namespace realcam::oidn

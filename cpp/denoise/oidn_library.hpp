@@ -1,6 +1,6 @@
 #pragma once
-// Functions of Open Image Denoise's C interface (version 2). The library is loaded when a picture is to be denoised, so
-// that nothing else depends on it.
+// Functions of Open Image Denoise's C interface (version 2), with the types and names of its documentation. The library
+// is loaded when a picture is to be denoised, so that nothing else depends on it.
 
 #include <cstddef>
 #include <string>
@@ -16,6 +16,7 @@ using Monitor = bool (*)(void* user, double done);
 // Values of the interface's enumerations.
 inline constexpr int kCpu = 1, kFloat3 = 3, kCancelled = 6, kFast = 4, kBalanced = 5, kHigh = 6;
 
+/// The functions of the library: oidnNewDevice and so on.
 struct Library {
     Device (*new_device)(int type);
     Device (*new_cuda_device)(const int* ordinals, const Stream* streams, int count);

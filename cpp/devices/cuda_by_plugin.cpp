@@ -21,25 +21,28 @@ std::string why_no_gpu_by_plugin() {
 namespace realcam {
 namespace {
 
+/// The plug-in, or why there is none.
 struct Plugin {
     const CudaBackend* backend = nullptr;
-    bool is_named = false;
-    std::string failure;  ///< reason, if `backend` is null
+    bool is_named = false;  ///< true if a path was set
+    std::string failure;    ///< message of the DeviceError, if `backend` is null
 };
 
+/// Path that name_cuda_plugin has set.
 std::string& named_path() {
     static std::string path;
     return path;
 }
 
-Plugin loaded() {
+/// Loads the plug-in.
+Plugin load() {
     const char* const variable = std::getenv("REALCAM_CUDA_PLUGIN");
     const std::string path = variable ? variable : named_path();
     if (path.empty())
         return {
             nullptr, false,
-            "this build of realcam has no CUDA backend: `pip install realcam[cuda]` brings one to the wheel, a build "
-            "from the source with nvcc has one, and the device \"cpu\" works without"};
+            "this build of realcam has no CUDA backend: `pip install realcam[cuda]` adds it to the wheel, and a build "
+            "from the source with nvcc has it; or use device=\"cpu\""};
     try {
         return {&load_cuda_plugin(path), true, ""};
     } catch (const DeviceError& error) {
@@ -47,12 +50,13 @@ Plugin loaded() {
     }
 }
 
+/// Returns the plug-in, which is loaded by the first call.
 const Plugin& plugin() {
-    static const Plugin once = loaded();
-    return once;
+    static const Plugin loaded_once = load();
+    return loaded_once;
 }
 
-/// Throws DeviceError if there is no plug-in or it cannot be loaded.
+/// Returns the functions of the plug-in. Throws DeviceError if there is no plug-in or it cannot be loaded.
 const CudaBackend& backend() {
     if (!plugin().backend) throw DeviceError(plugin().failure);
     return *plugin().backend;
@@ -66,6 +70,8 @@ void name_cuda_plugin(const std::string& path) {
 std::string why_no_gpu_by_plugin() {
     return plugin().is_named ? why_no_cuda_device() : "";
 }
+
+// The functions of CudaBackend, declared in the headers of cpp/cuda.
 
 std::vector<CudaDevice> cuda_devices() {
     return plugin().backend ? plugin().backend->cuda_devices() : std::vector<CudaDevice>{};

@@ -7,14 +7,17 @@
 namespace realcam {
 namespace {
 
-constexpr const char* kAdvice = "`pip install --force-reinstall realcam[cuda]` installs both of one version";
+/// Part of the messages that says what to install.
+constexpr const char* kAdvice = "`pip install --force-reinstall realcam[cuda]` installs matching versions";
 
+/// Throws DeviceError with the last error of the dynamic loader.
 [[noreturn]] void fail_to_load() {
     const char* error = dlerror();
     throw DeviceError("the CUDA plug-in cannot be loaded: " + std::string(error ? error : "no reason is given") + "; " +
-                      kAdvice + ", and device=\"cpu\" works without");
+                      kAdvice + "; or use device=\"cpu\"");
 }
 
+/// Returns a function of a library by its symbol. Throws DeviceError if it is missing.
 template <class F>
 F* find(void* library, const char* name) {
     void* const found = dlsym(library, name);
@@ -30,8 +33,8 @@ const CudaBackend& load_cuda_plugin(const std::string& path) {
     if (!library) fail_to_load();
     const std::string stamp = find<CudaPluginStamp>(library, kCudaPluginStamp)();
     if (stamp != cuda_backend_stamp())
-        throw DeviceError("the CUDA plug-in " + path + " is of realcam " + stamp + ", and this is realcam " +
-                          cuda_backend_stamp() + "; " + kAdvice + ", and device=\"cpu\" works without");
+        throw DeviceError("the CUDA plug-in " + path + " was built for realcam " + stamp + "; this is realcam " +
+                          cuda_backend_stamp() + "; " + kAdvice + "; or use device=\"cpu\"");
     return *find<CudaPluginBackend>(library, kCudaPluginBackend)(&host);
 }
 

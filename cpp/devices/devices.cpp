@@ -13,27 +13,30 @@
 namespace realcam {
 namespace {
 
+/// Throws InputError for an unknown device name.
 [[noreturn]] void fail_unknown(const std::string& device) {
     throw InputError("there is no device \"" + device +
                      "\"; expected auto, cpu, cuda (all GPUs), cuda:0 or cuda:0,1 (`realcam devices` lists them)");
 }
 
-/// Returns the ordinals after "cuda:"; empty for "cuda".
+/// Parses the ordinals after "cuda:"; empty for "cuda". Throws InputError if they are malformed or repeated.
 std::vector<int> ordinals_of(const std::string& device) {
     std::vector<int> ordinals;
     if (device == "cuda") return ordinals;
     const char *at = device.data() + 5, *end = device.data() + device.size();
     for (;; ++at) {
         int ordinal = -1;
-        const auto [rest, error] = std::from_chars(at, end, ordinal);
-        const bool fresh = std::find(ordinals.begin(), ordinals.end(), ordinal) == ordinals.end();
-        if (error != std::errc() || ordinal < 0 || !fresh || (rest != end && *rest != ',')) fail_unknown(device);
+        const auto [number_end, error] = std::from_chars(at, end, ordinal);
+        const bool is_new = std::find(ordinals.begin(), ordinals.end(), ordinal) == ordinals.end();
+        if (error != std::errc() || ordinal < 0 || !is_new || (number_end != end && *number_end != ','))
+            fail_unknown(device);
         ordinals.push_back(ordinal);
-        at = rest;
+        at = number_end;
         if (at == end) return ordinals;
     }
 }
 
+/// Returns the GPUs of this machine.
 std::vector<Device> gpus() {
     std::vector<Device> list;
     for (const CudaDevice& gpu : cuda_devices())
@@ -44,18 +47,19 @@ std::vector<Device> gpus() {
     return list;
 }
 
+/// Opens a session on these GPUs; empty: all.
 std::unique_ptr<Session> make_gpu_session(std::vector<int> ordinals) {
     if (ordinals.empty())
         for (const CudaDevice& gpu : cuda_devices()) ordinals.push_back(gpu.ordinal);
     return make_cuda_session(ordinals, fast_pupil_tracer());
 }
 
-/// Returns the ordinal of the one GPU that a device name stands for. `what_happens`: begins the error message if the
-/// name stands for several.
-int one_gpu(const std::string& device, const std::string& what_happens) {
+/// Returns the ordinal of the single GPU that a device name stands for; "cuda" is the first one. `what_happens`: begins
+/// the error message if the name stands for several, as in "frames are taken". Throws InputError and DeviceError.
+int single_gpu(const std::string& device, const std::string& what_happens) {
     if (device != "cuda" && !device.starts_with("cuda:")) fail_unknown(device);
     const std::vector<int> ordinals = ordinals_of(device);
-    if (ordinals.size() > 1) throw InputError(what_happens + " on one GPU; use one, such as device=\"cuda:0\"");
+    if (ordinals.size() > 1) throw InputError(what_happens + " on a single GPU; use device=\"cuda:0\", for example");
     return cuda_device(ordinals.empty() ? 0 : ordinals.front()).ordinal;
 }
 
@@ -90,12 +94,12 @@ std::unique_ptr<Session> make_session(const std::string& device, const DeviceNot
 std::unique_ptr<Session> make_live_session(const std::string& device, const DeviceNotice& notice) {
     if (device == "cpu") return make_embree_session();
     if (device == "auto") return make_best_session(notice);
-    return make_gpu_session({one_gpu(device, "frames are taken")});
+    return make_gpu_session({single_gpu(device, "frames are taken")});
 }
 
 std::optional<int> gpu_for_rays(const std::string& device) {
     if (device == "cpu" || (device == "auto" && cuda_devices().empty())) return std::nullopt;
-    return one_gpu(device == "auto" ? "cuda" : device, "rays are traced");
+    return single_gpu(device == "auto" ? "cuda" : device, "rays are traced");
 }
 
 }  // namespace realcam

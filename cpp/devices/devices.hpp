@@ -9,29 +9,29 @@ namespace realcam {
 
 class Session;
 
-/// Device to render on, by the name that make_session takes.
+/// Device to render on.
 struct Device {
-    std::string name;         ///< cpu, cuda:0, cuda:1, ...
+    std::string name;         ///< name for make_session: cpu, cuda:0, cuda:1, ...
     std::string description;  ///< for display
 };
 
 /// Returns all devices of this machine, the CPU first.
 std::vector<Device> devices();
 
-/// Receives one sentence for the user: why "auto" is the CPU although a GPU or the plug-in for GPUs is present.
+/// Receives a sentence for the user: why "auto" chooses the CPU although a GPU or the plug-in for GPUs is present.
 using DeviceNotice = std::function<void(const std::string&)>;
 
-/// Opens a session on a device. "auto": the first GPU if this build has code for it, else the CPU. "cpu". "cuda": all
-/// GPUs. "cuda:1", "cuda:0,1": these GPUs. Throws InputError for another name, and DeviceError if the device is missing
-/// or does not work.
+/// Opens a session on a device. "auto": the first GPU if this build has code for it, else the CPU. "cpu": the CPU.
+/// "cuda": all GPUs. "cuda:1" or "cuda:0,1": these GPUs. Throws InputError for another name, and DeviceError if the
+/// device is missing or does not work.
 std::unique_ptr<Session> make_session(const std::string& device, const DeviceNotice& notice);
 
 /// Opens a session on a single device, for live frames: "cuda" is the first GPU, and several GPUs are an InputError.
 /// Otherwise as make_session.
 std::unique_ptr<Session> make_live_session(const std::string& device, const DeviceNotice& notice);
 
-/// Returns the ordinal of the single GPU for tracing given rays, or std::nullopt for the CPU. "cuda" is the first GPU;
-/// see make_session for other names and for errors.
+/// Returns the ordinal of the GPU on which a device name lets arrays of rays be traced, or std::nullopt for the CPU.
+/// "cuda" is the first GPU, and several GPUs are an InputError; see make_session for other names and for errors.
 std::optional<int> gpu_for_rays(const std::string& device);
 
 }  // namespace realcam

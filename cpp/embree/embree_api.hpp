@@ -1,5 +1,5 @@
 #pragma once
-// Wraps the difference between the queries of Embree 3 and 4.
+// Ray queries in packets of 16, for Embree 3 and 4 alike.
 #if REALCAM_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
 #else
@@ -10,8 +10,10 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Hint about a packet's rays: coherent rays (of a camera) traverse the same part of the scene.
 enum class RayOrder { coherent, incoherent };
 
+/// Finds the closest hits of a packet. `valid`: -1 for each ray that is traced, else 0.
 inline void intersect16(const int* valid, RTCScene scene, RayOrder order, RTCRayHit16* rays) {
 #if REALCAM_EMBREE_MAJOR >= 4
     RTCIntersectArguments arguments;
@@ -27,6 +29,7 @@ inline void intersect16(const int* valid, RTCScene scene, RayOrder order, RTCRay
 #endif
 }
 
+/// Tests a packet for occlusion: sets tfar of occluded rays to minus infinity. `valid`: as in intersect16.
 inline void occluded16(const int* valid, RTCScene scene, RayOrder order, RTCRay16* rays) {
 #if REALCAM_EMBREE_MAJOR >= 4
     RTCOccludedArguments arguments;

@@ -24,14 +24,13 @@ EmbreeScene::OwnScene EmbreeScene::new_scene() const {
 }
 
 void EmbreeScene::commit(const OwnScene& scene) const {
-    const auto goes_on = [](void* stop, double) { return !*static_cast<const std::atomic<bool>*>(stop); };
-    rtcSetSceneProgressMonitorFunction(scene.get(), goes_on, const_cast<std::atomic<bool>*>(&stop_));
+    const auto continues = [](void* stop, double) { return !*static_cast<const std::atomic<bool>*>(stop); };
+    rtcSetSceneProgressMonitorFunction(scene.get(), continues, const_cast<std::atomic<bool>*>(&stop_));
     rtcCommitScene(scene.get());
     check();
 }
 
-/// Embree's filter function: rejects hits at which the ray passes through the surface.
-void EmbreeScene::let_through(const RTCFilterFunctionNArguments* hits) {
+void EmbreeScene::filter_holes(const RTCFilterFunctionNArguments* hits) {
     const auto& [mesh, instance_count] = *static_cast<const MeshWithHoles*>(hits->geometryUserPtr);
     for (unsigned i = 0; i < hits->N; ++i) {
         if (hits->valid[i] == 0) continue;
@@ -59,8 +58,8 @@ EmbreeScene::OwnScene EmbreeScene::build(const RenderSpaceMesh& mesh) {
     if (mesh.has_holes()) {
         with_holes_.push_back({mesh.view(), static_cast<std::uint32_t>(placed_.instances().size())});
         rtcSetGeometryUserData(geometry.get(), &with_holes_.back());
-        rtcSetGeometryIntersectFilterFunction(geometry.get(), let_through);
-        rtcSetGeometryOccludedFilterFunction(geometry.get(), let_through);
+        rtcSetGeometryIntersectFilterFunction(geometry.get(), filter_holes);
+        rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_holes);
     }
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometry(scene.get(), geometry.get());
@@ -86,17 +85,17 @@ EmbreeScene::EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origi
         const OwnGeometry static_geometry = attach(meshes_.front(), static_cast<unsigned>(instances.size()));
         rtcCommitGeometry(static_geometry.get());
     }
-    add_instances();
+    commit_instances();
 }
 
-EmbreeScene::OwnGeometry EmbreeScene::attach(const OwnScene& mesh, unsigned number) const {
+EmbreeScene::OwnGeometry EmbreeScene::attach(const OwnScene& mesh, unsigned id) const {
     OwnGeometry geometry(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(geometry.get(), mesh.get());
-    rtcAttachGeometryByID(all_.get(), geometry.get(), number);
+    rtcAttachGeometryByID(all_.get(), geometry.get(), id);
     return geometry;
 }
 
-void EmbreeScene::add_instances() {
+void EmbreeScene::commit_instances() {
     for (std::size_t i = 0; i < instances_.size(); ++i) {
         if (stop_) throw Cancelled();
         const InstanceView& instance = placed_.instances()[i];
@@ -115,7 +114,7 @@ void EmbreeScene::add_instances() {
 
 void EmbreeScene::move(const Assembly& assembly, TimeInterval exposure) {
     placed_.move(assembly, exposure);
-    if (all_) add_instances();
+    if (all_) commit_instances();
 }
 
 }  // namespace realcam

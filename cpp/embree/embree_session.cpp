@@ -27,13 +27,16 @@ namespace realcam {
 namespace {
 
 constexpr int kTileSide = SampleSharing::kTileSide;
-constexpr std::size_t kDevelopedAtOnce = 4096;  // pixels
+constexpr std::size_t kDevelopGrain = 4096;  // pixels that are developed by one task
 
+/// Returns the error for a device that Embree could not create.
 DeviceError rtc_error(RTCError code) {
     const std::string text = "Embree could not be started: ";
     return DeviceError(text + (code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error " + std::to_string(code)));
 }
 
+/// Session on the CPU. Renders tiles of pixels in parallel with the kernels of the machine's instruction set
+/// (kernels.hpp).
 class EmbreeSession final : public Session {
 public:
     EmbreeSession() : device_(rtcNewDevice(nullptr)) {
@@ -54,8 +57,8 @@ public:
     }
 
 private:
-    /// Ignores PupilStart and computes the pupil from scratch: a frame takes so much longer than that search that a
-    /// discarded frame would cost more.
+    /// Ignores PupilStart and searches for the pupil from scratch: on a CPU a frame takes so much longer than the
+    /// search that discarding a frame with an approximate pupil would cost more.
     void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings, PupilStart,
                  const KeepGoing& keep_going, OwnStop& stop) override {
         const auto work = [&] {
@@ -63,12 +66,12 @@ private:
                 setup_ = last_setup_.make(camera, fast_pupil_tracer(), settings.lens_effects());
                 place(scene, camera);
                 camera_view_ = setup_->view(scene_->placed().origin_m(), scene_->placed().moves());
-                traced_lights_ = traced_lights(scene_->placed().view(), camera_view_, *setup_, settings.lights_traced(),
-                                               fast_pupil_tracer());
+                traced_lights_ = traced_lights(scene_->placed().view(), camera_view_, *setup_,
+                                               settings.effective_light_tracing(), fast_pupil_tracer());
                 camera_view_.traced_lights = traced_lights_.view();
             });
         };
-        run_heeding(work, keep_going, stop);
+        run_interruptibly(work, keep_going, stop);
         if (stop) throw Cancelled();
     }
 
@@ -84,11 +87,11 @@ private:
         stats_ = {};
     }
 
-    void take(const SampleRange& range, const PixelCounts& counts, bool traces_lights, std::atomic<std::int64_t>& done,
-              OwnStop&) override {
+    void take_samples(const SampleRange& range, const PixelCounts& counts, bool traces_lights,
+                      std::atomic<std::int64_t>& done, OwnStop&) override {
         if (camera_view_.pixel_pupils.known) {
             for (const SampleRange& pass : learning_passes(range)) {
-                expose_film(pass, counts.behind(pass.first - range.first), settings(), done);
+                expose_film(pass, counts.after(pass.first - range.first), settings(), done);
                 known_ = found_;
             }
         } else {
@@ -110,25 +113,27 @@ private:
         return splats;
     }
 
-    void see_layers(const FilmRegion& region, const SampleRange& range, std::vector<LayerSum>& film,
-                    std::atomic<std::int64_t>& done, OwnStop&) override {
+    void trace_layers(const FilmRegion& region, const SampleRange& range, std::vector<LayerSum>& film,
+                      std::atomic<std::int64_t>& done, OwnStop&) override {
         for_tiles(region, range, settings(), [&](const realcam_tile& part) {
             realcam_tile tile = part;
             std::vector<LayerSum> sums(pixels_of(tile));
             tile.sums = sums.data();
-            kernels().see_layers(&tile);
-            for_pixels(tile, region, [&](std::size_t here, std::size_t there) { film[there] += sums[here]; });
+            kernels().trace_layers(&tile);
+            for_pixels(tile, region,
+                       [&](std::size_t in_tile, std::size_t in_region) { film[in_region] += sums[in_tile]; });
             done += samples_of_tile(tile);
         });
     }
 
-    void see_pixel_centre_surfaces(std::vector<PixelCentreSurface>& film, OwnStop&) override {
+    void trace_pixel_centres(std::vector<PixelCentreSurface>& film, OwnStop&) override {
         for_tiles(whole_film(), {settings().seed, 0, 1}, settings(), [&](const realcam_tile& part) {
             realcam_tile tile = part;
             std::vector<PixelCentreSurface> surfaces(pixels_of(tile));
             tile.sums = surfaces.data();
-            kernels().see_pixel_centre_surfaces(&tile);
-            for_pixels(tile, whole_film(), [&](std::size_t here, std::size_t there) { film[there] = surfaces[here]; });
+            kernels().trace_pixel_centres(&tile);
+            for_pixels(tile, whole_film(),
+                       [&](std::size_t in_tile, std::size_t in_region) { film[in_region] = surfaces[in_tile]; });
         });
     }
 
@@ -136,11 +141,12 @@ private:
         return developed_auxiliary_layers(view(), settings().layers, film_exposure_s());
     }
 
-    std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
-                                     std::shared_ptr<void> in_progress) override {
-        // Later calls wait for the frame, so that the members which this thread uses do not change.
-        auto work = [this, ranges, curve, film = camera().film, dials = Dials{film_exposure_s(), camera().iso},
-                     settings = settings(), token = std::move(in_progress)]() mutable {
+    std::shared_ptr<LiveFrame> start_frame(const std::vector<SampleRange>& ranges, ToneCurve curve,
+                                           std::shared_ptr<void> in_progress) override {
+        // All later calls wait for the frame, so that the members which its thread uses do not change meanwhile.
+        auto work = [this, ranges, curve, film = camera().film,
+                     development = Development{film_exposure_s(), camera().iso}, settings = settings(),
+                     token = std::move(in_progress)]() mutable {
             const std::shared_ptr<void> until_the_end = std::move(token);
             std::atomic<std::int64_t> done{0};
             for (const SampleRange& range : ranges) {
@@ -149,8 +155,8 @@ private:
             }
             if (is_stopped()) throw Cancelled();
             return arena(settings).execute([&] {
-                return developed_codes(view(film, settings), dials.exposure_s, dials.iso, curve,
-                                       parallel_ray_loop({}, kDevelopedAtOnce));
+                return developed_codes(view(film, settings), development.exposure_s, development.iso, curve,
+                                       parallel_ray_loop({}, kDevelopGrain));
             });
         };
         const Film& film = camera().film;
@@ -164,7 +170,7 @@ private:
 
     Image develop() override {
         Image image = arena(settings()).execute([&] {
-            return developed(view(), film_exposure_s(), parallel_ray_loop({}, kDevelopedAtOnce));
+            return developed(view(), film_exposure_s(), parallel_ray_loop({}, kDevelopGrain));
         });
         image.stats = stats_;
         image.stats.device = name();
@@ -172,7 +178,8 @@ private:
     }
 
     double least_lamp_share() const override {
-        return realcam::least_lamp_share(scene_->placed().view(), camera_view_, *setup_, settings().lights_traced());
+        return realcam::least_lamp_share(scene_->placed().view(), camera_view_, *setup_,
+                                         settings().effective_light_tracing());
     }
     std::vector<float> develop_traced() override { return traced_exposure(splats_, film_exposure_s()); }
 
@@ -185,21 +192,25 @@ private:
     void lower_stop() noexcept override { stop_.lower(); }
     bool is_stopped() const override { return stop_.flag(); }
 
-    struct Dials {
+    /// Settings of the camera that only its development depends on.
+    struct Development {
         double exposure_s, iso;
     };
 
+    /// Returns the film for its development.
     FilmView view() const { return view(camera().film, settings()); }
     FilmView view(const Film& film, const RenderSettings& settings) const {
         return view_of(film_, film.width, film.height, settings, splats_);
     }
 
+    /// Returns an arena with the requested number of threads.
     static tbb::task_arena arena(const RenderSettings& settings) {
         // For more threads than cores, TBB writes a warning to the console and starts only as many as there are cores.
-        const int most = tbb::info::default_concurrency();
-        return tbb::task_arena(settings.threads > 0 ? std::min(settings.threads, most) : most);
+        const int cores = tbb::info::default_concurrency();
+        return tbb::task_arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
     }
 
+    /// Builds or updates scene_ if the scene or the position of the camera has changed.
     void place(const Assembly& scene, const Camera& camera) {
         const SceneChange change = scene_change(scene_ ? &scene_->placed() : nullptr, scene, camera);
         if (change == SceneChange::none) return;
@@ -214,12 +225,14 @@ private:
         }
     }
 
+    /// Adds samples to the film.
     void expose_film(const SampleRange& range, const PixelCounts& counts, const RenderSettings& settings,
                      std::atomic<std::int64_t>& done) {
         expose(whole_film(), range, counts, settings, done, film_, stats_);
     }
 
-    /// Adds samples of a region to the sums of its pixels. `counts`: of the region's pixels.
+    /// Adds samples of a region's pixels to `film`, which has the pixels of the region. `counts`: of these pixels. Adds
+    /// their cost to `stats`.
     void expose(const FilmRegion& region, const SampleRange& range, const PixelCounts& counts,
                 const RenderSettings& settings, std::atomic<std::int64_t>& done, FilmSums& film, RenderStats& stats) {
         const PathSettings path = settings.path();
@@ -227,18 +240,19 @@ private:
         for_tiles(region, range, settings, [&](const realcam_tile& part) {
             realcam_tile tile = part;
             tile.shares = shares;
-            const std::vector<std::uint32_t> wanted = counts_of(tile, region, counts, range);
-            if (!wanted.empty() && *std::max_element(wanted.begin(), wanted.end()) == 0) return;
-            tile.counts = wanted.empty() ? nullptr : wanted.data();
+            const std::vector<std::uint32_t> tile_counts = counts_of(tile, region, counts, range);
+            if (!tile_counts.empty() && *std::max_element(tile_counts.begin(), tile_counts.end()) == 0) return;
+            tile.counts = tile_counts.empty() ? nullptr : tile_counts.data();
             tile.path_settings = &path;
             tile.adds_squares = settings.layers.has(Layer::variance);
             tile.adds_half = settings.layers.has_any(kHalfLayers);
-            tile.balances = balances_wavelengths(settings);
+            tile.adds_excess = balances_wavelengths(settings);
             FilmSums sums(pixels_of(tile));
             tile.sums = sums.data();
             kernels().render_tile(&tile);
-            if (shares && is_stopped()) return;
-            for_pixels(tile, region, [&](std::size_t here, std::size_t there) { film[there] += sums[here]; });
+            if (shares && is_stopped()) return;  // the sums of an incomplete tile are invalid
+            for_pixels(tile, region,
+                       [&](std::size_t in_tile, std::size_t in_region) { film[in_region] += sums[in_tile]; });
             done += samples_of_tile(tile);
             count(tile, stats);
         });
@@ -249,12 +263,15 @@ private:
                                                 const PixelCounts& counts, const SampleRange& range) {
         if (!counts.counts) return {};
         const SampleRange visit{tile.seed, tile.first_sample, tile.sample_count};
-        const PixelCounts here = counts.behind(visit.first - range.first);
-        std::vector<std::uint32_t> wanted(pixels_of(tile));
-        for_pixels(tile, region, [&](std::size_t at, std::size_t pixel) { wanted[at] = here.of(pixel, visit); });
-        return wanted;
+        const PixelCounts remaining = counts.after(visit.first - range.first);
+        std::vector<std::uint32_t> tile_counts(pixels_of(tile));
+        for_pixels(tile, region, [&](std::size_t in_tile, std::size_t in_region) {
+            tile_counts[in_tile] = remaining.of(in_region, visit);
+        });
+        return tile_counts;
     }
 
+    /// Returns a film without light for each kind of splatted light.
     std::vector<SplatFilm> empty_splats() const {
         std::vector<SplatFilm> films;
         for (const GhostView& light : splatted_lights(*setup_, traced_lights_))
@@ -264,21 +281,22 @@ private:
         return films;
     }
 
-    /// Adds the splatted light that belongs to these samples of each pixel.
+    /// Adds the splatted light that belongs to a range of samples of each pixel to `films`.
     void splat(std::vector<SplatFilm>& films, const SampleRange& range, const RenderSettings& settings) {
         const std::vector<GhostView> lights = splatted_lights(*setup_, traced_lights_);
         for (std::size_t i = 0; i < lights.size(); ++i) splat_on(films[i], lights[i], range, settings);
     }
 
+    /// Adds one kind of splatted light to its film.
     void splat_on(SplatFilm& film, const GhostView& ghosts, const SampleRange& range, const RenderSettings& settings) {
         const SceneView scene = scene_->placed().view();
         const GhostBlocks blocks = ghost_blocks(camera_view_, range, ghosts);
         const PathSettings path = settings.path();
-        constexpr std::uint64_t kVisit = 64;
+        constexpr std::uint64_t kBlocksPerTask = 64;
         const std::uint64_t count = blocks.end - blocks.first;
-        // With many samples, merely skipping the remaining visits would take minutes, too.
+        // Cancels the remaining tasks on a stop: with many samples, even tasks that do nothing would take minutes.
         tbb::task_group_context group;
-        const auto visit_blocks = [&](std::uint64_t visit) {
+        const auto run_task = [&](std::uint64_t task) {
             if (is_stopped()) {
                 group.cancel_group_execution();
                 return;
@@ -288,8 +306,8 @@ private:
             job.camera_view = &camera_view_;
             job.ghost_view = &ghosts;
             job.embree_scene = scene_->handle();
-            job.first_block = blocks.first + visit * kVisit;
-            job.block_count = std::min(kVisit, count - visit * kVisit);
+            job.first_block = blocks.first + task * kBlocksPerTask;
+            job.block_count = std::min(kBlocksPerTask, count - task * kBlocksPerTask);
             job.seed = range.seed;
             job.path_settings = &path;
             job.units_per_lux = film.units_per_lux;
@@ -300,12 +318,14 @@ private:
             kernels().splat_ghosts(&job);
             for (std::size_t k = 0; k < film.blocks.size(); ++k) std::atomic_ref(film.blocks[k]) += job.blocks_done[k];
         };
-        arena(settings).execute(
-            [&] { tbb::parallel_for(std::uint64_t{0}, (count + kVisit - 1) / kVisit, visit_blocks, group); });
+        arena(settings).execute([&] {
+            tbb::parallel_for(std::uint64_t{0}, (count + kBlocksPerTask - 1) / kBlocksPerTask, run_task, group);
+        });
     }
 
-    /// Calls visit(tile) for the region's tiles, without sums, and a part of the samples, until all samples are taken.
-    /// A tile takes only some samples per visit, so that progress is even over the picture.
+    /// Calls visit(tile) in parallel for all tiles of a region with the first kSamplesPerSum samples of the range, then
+    /// for all tiles with the next samples, and so on, so that progress is even over the picture. The tiles have no
+    /// sums; visit sets these.
     template <class Visit>
     void for_tiles(const FilmRegion& region, const SampleRange& range, const RenderSettings& settings, Visit&& visit) {
         const int columns = (region.width + kTileSide - 1) / kTileSide,
@@ -324,7 +344,8 @@ private:
         });
     }
 
-    /// Returns a tile whose first pixel is `right` and `down` pixels from the region's.
+    /// Returns the tile whose first pixel lies `right` and `down` pixels from that of the region, for a range of
+    /// samples.
     realcam_tile tile_at(const FilmRegion& region, int right, int down, const SampleRange& range) const {
         realcam_tile tile{};
         tile.scene_view = &scene_view_;
@@ -342,6 +363,7 @@ private:
         return tile;
     }
 
+    /// Value of realcam_tile::stopped.
     static int is_raised(const void* stop) { return *static_cast<const std::atomic<bool>*>(stop); }
 
     static std::size_t pixels_of(const realcam_tile& tile) {
@@ -351,7 +373,7 @@ private:
         return static_cast<std::int64_t>(tile.sample_count) * tile.width * tile.height;
     }
 
-    /// Calls f(pixel of the tile, pixel of the region) for all pixels of a tile.
+    /// Calls f(pixel index in the tile, pixel index in the region) for all pixels of a tile.
     template <class F>
     static void for_pixels(const realcam_tile& tile, const FilmRegion& region, F&& f) {
         for (int row = 0; row < tile.height; ++row)
@@ -359,6 +381,7 @@ private:
                 f(static_cast<std::size_t>(row * tile.width + column), region.index(tile.x + column, tile.y + row));
     }
 
+    /// Adds the cost of a tile to `stats`.
     void count(const realcam_tile& tile, RenderStats& stats) {
         const std::lock_guard lock(stats_mutex_);
         stats.lens_seconds += tile.lens_seconds;
@@ -376,8 +399,8 @@ private:
     std::shared_ptr<const CameraSetup> setup_;  ///< owns the data that `camera_view_` points to
     TracedLights traced_lights_;
     CameraView camera_view_{};
-    std::vector<PixelPupil> known_, found_;  ///< one per pixel; see PixelPupils
-    SceneView scene_view_{};  ///< valid while tiles are visited
+    std::vector<PixelPupil> known_, found_;  ///< learned pupils, one per pixel (PixelPupils)
+    SceneView scene_view_{};  ///< valid during for_tiles
     FilmSums film_;
     std::vector<SplatFilm> splats_;  ///< one per light of splatted_lights
     std::mutex stats_mutex_;

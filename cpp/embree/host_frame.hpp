@@ -10,7 +10,8 @@
 
 namespace realcam {
 
-/// Stop flag for the host's threads. Remains set until it was lowered as often as it was raised.
+/// Stop flag that the threads of the CPU backend read. Remains set until it was lowered as often as it was raised.
+/// Functions may be called from any thread.
 class HostStop {
 public:
     void raise() {
@@ -33,16 +34,18 @@ private:
 /// Live frame rendered by a thread of the host.
 class HostFrame final : public LiveFrame {
 public:
+    /// Future of the 8-bit values, height x width x 3.
     using Codes = std::shared_future<std::vector<std::uint8_t>>;
 
+    /// `samples`: see LiveFrame::samples.
     HostFrame(int width, int height, std::int64_t samples, Codes codes)
         : width_(width), height_(height), samples_(samples), codes_(std::move(codes)) {}
 
     int width() const override { return width_; }
     int height() const override { return height_; }
     std::int64_t samples() const override { return samples_; }
-    bool wait_for(std::chrono::microseconds longest) const override {
-        return codes_.wait_for(longest) == std::future_status::ready;
+    bool wait_for(std::chrono::microseconds timeout) const override {
+        return codes_.wait_for(timeout) == std::future_status::ready;
     }
     const std::uint8_t* codes() const override { return codes_.get().data(); }
 

@@ -13,30 +13,34 @@
 #include "../render/film/pixel_sum.hpp"
 #include "../render/ghosts/gather_ghosts.hpp"
 #include "../render/ghosts/ghost_film.hpp"
-#include "../render/layers/see_layers.hpp"
+#include "../render/layers/trace_layers.hpp"
 #include "../render/lights/trace_lights.hpp"
 #include "../render/path/path_settings.hpp"
 #include "../render/path/render_samples.hpp"
 #include "packet_scene.hpp"
 
-// Built once for each instruction set, see cmake/RealcamInstructionSets.cmake.
+// The CPU's kernels: loops over samples and rays in blocks of lanes. Built once for each instruction set, see
+// cmake/RealcamInstructionSets.cmake.
 
 namespace REALCAM_NAMESPACE {
 namespace {
 
-constexpr int kLanes = 256;
+constexpr int kLanes = 256;  ///< samples per block
 
+/// Returns the time in seconds.
 double now() {
     timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+/// Probe of advance_paths that measures the seconds of each stage.
 struct StageClock {
-    double seconds[3] = {0, 0, 0};
-    double since = now();
+    double seconds[3] = {0, 0, 0};  ///< by RenderStage
+    double since = now();           ///< begin of the current stage
     RenderStage stage = RenderStage::other;
 
+    /// Begins a stage.
     void enter(RenderStage next) {
         const double time = now();
         seconds[static_cast<int>(stage)] += time - since;
@@ -45,12 +49,14 @@ struct StageClock {
     }
 };
 
-/// Visits pixels in small squares, because neighbours in a packet hit the same part of the scene.
+/// Order of a tile's pixels in small squares, so that the rays of a packet hit the same part of the scene.
 struct PixelOrder {
     static constexpr int kSide = 4;
-    int width, height;
+    int width, height;  ///< size of the tile
 
+    /// Number of indices; includes those of pixels outside the tile, which complete its last squares.
     int count() const { return ((width + kSide - 1) / kSide) * ((height + kSide - 1) / kSide) * kSide * kSide; }
+    /// Returns the pixel of an index in x and y.
     void at(int index, int& x, int& y) const {
         const int square = index / (kSide * kSide), inside = index % (kSide * kSide);
         const int squares = (width + kSide - 1) / kSide;
@@ -59,8 +65,8 @@ struct PixelOrder {
     }
 };
 
-/// Calls f(block, lanes, pixel_index) for all samples of a tile, kLanes at a time. `pixel_index`: index in the tile's
-/// sums of the pixel of each of the first `lanes` samples.
+/// Calls f(block, lanes, pixel_index) for all samples of a tile, kLanes at a time. Only the first `lanes` lanes of a
+/// block are in use; `pixel_index` holds for each of them the index of its pixel in the tile's sums.
 template <class F>
 void for_blocks_of(const realcam_tile& tile, int film_width, F&& f) {
     const PixelOrder order{tile.width, tile.height};
@@ -75,14 +81,12 @@ void for_blocks_of(const realcam_tile& tile, int film_width, F&& f) {
             int x, y;
             order.at(pixel, x, y);
             const bool inside = x < tile.width && y < tile.height;
-            const std::uint32_t wanted = !inside       ? 0
-                                         : tile.counts ? tile.counts[y * tile.width + x]
-                                                       : tile.sample_count;
-            const std::uint32_t left = wanted - sample;
-            const int take = static_cast<int>(left) < kLanes - lanes ? static_cast<int>(left) : kLanes - lanes;
-            if (take > 0) {
+            const std::uint32_t count = !inside ? 0 : tile.counts ? tile.counts[y * tile.width + x] : tile.sample_count;
+            const std::uint32_t left = count - sample;
+            const int added = static_cast<int>(left) < kLanes - lanes ? static_cast<int>(left) : kLanes - lanes;
+            if (added > 0) {
                 const std::uint32_t stream = pixel_stream((tile.y + y) * film_width + tile.x + x, tile.seed);
-                for (int k = 0; k < take; ++k) {
+                for (int k = 0; k < added; ++k) {
                     block.column[lanes + k] = tile.x + x;
                     block.row[lanes + k] = tile.y + y;
                     block.used[lanes + k] = 1;
@@ -90,10 +94,10 @@ void for_blocks_of(const realcam_tile& tile, int film_width, F&& f) {
                     block.sample[lanes + k] = tile.first_sample + sample + static_cast<std::uint32_t>(k);
                     pixel_index[lanes + k] = y * tile.width + x;
                 }
-                lanes += take;
-                sample += static_cast<std::uint32_t>(take);
+                lanes += added;
+                sample += static_cast<std::uint32_t>(added);
             }
-            if (sample == wanted) {
+            if (sample == count) {
                 ++pixel;
                 sample = 0;
             }
@@ -106,13 +110,14 @@ void for_blocks_of(const realcam_tile& tile, int film_width, F&& f) {
     }
 }
 
+/// Returns the scene of a tile, for camera rays first.
 template <SceneKind scene_kind>
 PacketScene<scene_kind> packet_scene_of(const realcam_tile& tile, const SceneView& view) {
     return {static_cast<RTCScene>(tile.embree_scene), static_cast<std::uint32_t>(view.instance_count),
             RayOrder::coherent, 0};
 }
 
-/// Adds the dual-pixel halves. Out of line, because most pictures do not have these layers.
+/// Adds the sums for the dual-pixel layers. Out of line, because most pictures do not have these layers.
 template <Effects effects>
 [[gnu::noinline]] void add_halves(const CameraView& camera, const SampleBlock<kLanes>& block, int lanes,
                                   const int* pixel_index, const PathResults<kLanes>& results, PixelSum* sums) {
@@ -126,12 +131,14 @@ template <Effects effects>
 void add_shared(const PathResultsWith<kLanes, effects>& results, int lanes, const int* pixel_index, PixelSum* sums) {
     for (int step = 0; step < kSharedWavelengths - 1; ++step)
         for (int k = 0; k < lanes; ++k)
+            // An offset in the tile's sums, because SampleSharing was given the tile and its width (render_tile_of).
             if (const int away = results.shared.away[step][k]; away != 0) {
                 sums[pixel_index[k] + away].add(results.shared.irradiance[step][k]);
                 sums[pixel_index[k] + away].add_excess(results.shared.white[step][k]);
             }
 }
 
+/// Renders a tile with code that is compiled for these kinds and effects.
 template <LensKind lens_kind, SceneKind scene_kind, Effects effects>
 void render_tile_of(realcam_tile* tile) {
     const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
@@ -154,7 +161,7 @@ void render_tile_of(realcam_tile* tile) {
         if constexpr (effects.share_pixels())
             if (tile->shares) add_shared(results, lanes, pixel_index, sums);
         if constexpr (effects.have_wavelengths())
-            if (tile->balances)
+            if (tile->adds_excess)
                 for (int k = 0; k < lanes; ++k) sums[pixel_index[k]].add_excess(results.excess[k]);
         std::int32_t sampled = 0, passed = 0;
         for (int k = 0; k < lanes; ++k) {
@@ -174,10 +181,12 @@ void render_tile_of(realcam_tile* tile) {
     tile->scene_rays += scene.rays_traced;
 }
 
+/// Renders a tile with the code for these kinds. `effects_number`: index in kCompiledEffects.
 template <int effects_number>
 void render_tile_with(realcam_tile* tile, LensKind lens_kind, SceneKind scene_kind) {
     constexpr Effects effects = kCompiledEffects[effects_number];
-    // Lenses without rotational symmetry are rare, and each variant takes as long to compile.
+    // Lenses without rotational symmetry have one kernel for all scenes: they are rare, and each kernel takes long to
+    // compile.
     if (lens_kind == LensKind::any) return render_tile_of<LensKind::any, SceneKind::any, effects>(tile);
     switch (scene_kind) {
         case SceneKind::plain: return render_tile_of<LensKind::rotational, SceneKind::plain, effects>(tile);
@@ -189,15 +198,16 @@ void render_tile_with(realcam_tile* tile, LensKind lens_kind, SceneKind scene_ki
 void render_tile(realcam_tile* tile) {
     const auto& scene = *static_cast<const SceneView*>(tile->scene_view);
     const auto& camera = *static_cast<const CameraView*>(tile->camera_view);
-    const int wanted = number_of(camera.effects);
+    // Calls the instance of render_tile_with whose template argument is the index of the camera's effects.
+    const int effects_index = number_of(camera.effects);
     [&]<int... number>(std::integer_sequence<int, number...>) {
-        (void)((number == wanted &&
-                (render_tile_with<number>(tile, lens_kind_of(camera), kind_of(scene, camera)), true)) ||
+        (void)((number == effects_index &&
+                (render_tile_with<number>(tile, kernel_lens_kind(camera), kernel_scene_kind(scene, camera)), true)) ||
                ...);
     }(std::make_integer_sequence<int, std::size(kCompiledEffects)>());
 }
 
-void see_layers_of_tile(realcam_tile* tile) {
+void trace_layers_of_tile(realcam_tile* tile) {
     const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
     const CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
     LayerResults<kLanes> results;
@@ -205,28 +215,28 @@ void see_layers_of_tile(realcam_tile* tile) {
     auto scene = packet_scene_of<SceneKind::any>(*tile, view);
     for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* pixel_index) {
         scene.order = RayOrder::coherent;
-        see_layers(view, camera, block, scene, results);
+        trace_layers(view, camera, block, scene, results);
         for (int k = 0; k < lanes; ++k) sums[pixel_index[k]].add(results, k);
     });
 }
 
-void see_pixel_centre_surfaces_of_tile(realcam_tile* tile) {
+void trace_pixel_centres_of_tile(realcam_tile* tile) {
     const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
     const CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
-    PixelCentreSurface seen[kLanes];
+    PixelCentreSurface block_surfaces[kLanes];
     auto* const surfaces = static_cast<PixelCentreSurface*>(tile->sums);
     auto scene = packet_scene_of<SceneKind::any>(*tile, view);
     for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* pixel_index) {
         scene.order = RayOrder::coherent;
-        see_pixel_centre_surfaces(view, camera, block, scene, seen);
-        for (int k = 0; k < lanes; ++k) surfaces[pixel_index[k]] = seen[k];
+        trace_pixel_centres(view, camera, block, scene, block_surfaces);
+        for (int k = 0; k < lanes; ++k) surfaces[pixel_index[k]] = block_surfaces[k];
     });
 }
 
-/// Calls take(view, camera, ghosts, range, first, scene, splat) for each kLanes samples of a block, from sample `first`
-/// on.
-template <SceneKind scene_kind, class Take>
-void for_ghosts_of(realcam_ghosts* job, Take&& take) {
+/// Calls sample(view, camera, ghosts, range, first, scene, splat) for all samples of a job's blocks, kLanes at a time;
+/// `first` is the index of the first of these samples in its block.
+template <SceneKind scene_kind, class Sample>
+void for_ghosts_of(realcam_ghosts* job, Sample&& sample) {
     const SceneView view = *static_cast<const SceneView*>(job->scene_view);
     const CameraView camera = *static_cast<const CameraView*>(job->camera_view);
     const GhostView ghosts = *static_cast<const GhostView*>(job->ghost_view);
@@ -245,22 +255,24 @@ void for_ghosts_of(realcam_ghosts* job, Take&& take) {
         const int film = film_of_block(range.first_block, job->films);
         sums = static_cast<GhostSum*>(job->sums) + std::int64_t{film} * camera.width * camera.height;
         for (std::uint32_t first = 0; first < kGhostBlock; first += kLanes)
-            take(view, camera, ghosts, range, first, scene, splat);
+            sample(view, camera, ghosts, range, first, scene, splat);
         ++job->blocks_done[film];
     }
     job->rays += scene.rays_traced;
 }
 
+// Take the samples of a job, for each kind of splatted light.
+
 template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths>
 void splat_ghosts_with(realcam_ghosts* job) {
     for_ghosts_of<scene_kind>(
-        job, [](auto&... with) { splat_ghosts<lens_kind, scene_kind, has_wavelengths, kLanes>(with...); });
+        job, [](auto&... arguments) { splat_ghosts<lens_kind, scene_kind, has_wavelengths, kLanes>(arguments...); });
 }
 
 template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths>
 void trace_lights_with(realcam_ghosts* job) {
     for_ghosts_of<scene_kind>(
-        job, [](auto&... with) { trace_lights<lens_kind, scene_kind, has_wavelengths, kLanes>(with...); });
+        job, [](auto&... arguments) { trace_lights<lens_kind, scene_kind, has_wavelengths, kLanes>(arguments...); });
 }
 
 template <LensKind lens_kind, bool has_wavelengths>
@@ -273,11 +285,12 @@ void gather_ghosts_with(realcam_ghosts* job) {
     });
 }
 
-/// Splats the kind of light given by the job's GhostView.
+/// Takes samples of the kind of light that the job's GhostView selects.
 template <bool has_wavelengths>
 void take_splats_with(realcam_ghosts* job) {
     const auto& camera = *static_cast<const CameraView*>(job->camera_view);
-    const bool is_plain = kind_of(*static_cast<const SceneView*>(job->scene_view), camera) == SceneKind::plain;
+    const bool is_plain =
+        kernel_scene_kind(*static_cast<const SceneView*>(job->scene_view), camera) == SceneKind::plain;
     constexpr LensKind round = LensKind::rotational;
     switch (static_cast<const GhostView*>(job->ghost_view)->light) {
         case GhostLight::of_lights:
@@ -299,6 +312,8 @@ void take_splats(realcam_ghosts* job) {
     return static_cast<const GhostView*>(job->ghost_view)->effects.have_wavelengths() ? take_splats_with<true>(job)
                                                                                       : take_splats_with<false>(job);
 }
+
+// The functions of realcam_kernels for rays and sensors: they process a whole request in blocks.
 
 void generate_all(const void* request) {
     const RayRequest rays = *static_cast<const RayRequest*>(request);
@@ -342,23 +357,23 @@ void trace_block(const void* lens_view, void* rays) {
 }  // namespace
 }  // namespace REALCAM_NAMESPACE
 
+// The table of this instruction set's kernels is named realcam_kernels_v3, for example.
 #define REALCAM_JOIN2(a, b) a##b
 #define REALCAM_JOIN(a, b) REALCAM_JOIN2(a, b)
 #define REALCAM_TEXT2(a) #a
 #define REALCAM_TEXT(a) REALCAM_TEXT2(a)
 
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA);
-extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {
-    REALCAM_TEXT(REALCAM_ISA),
-    realcam::render_tile,
-    realcam::see_layers_of_tile,
-    realcam::see_pixel_centre_surfaces_of_tile,
-    realcam::take_splats,
-    realcam::generate_all,
-    realcam::trace_block,
-    realcam::trace_all<double>,
-    realcam::trace_all<float>,
-    realcam::expose_sensor,
-    realcam::film_points<float>,
-    realcam::film_points<double>,
-    realcam::aim_all};
+extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {REALCAM_TEXT(REALCAM_ISA),
+                                                                                realcam::render_tile,
+                                                                                realcam::trace_layers_of_tile,
+                                                                                realcam::trace_pixel_centres_of_tile,
+                                                                                realcam::take_splats,
+                                                                                realcam::generate_all,
+                                                                                realcam::trace_block,
+                                                                                realcam::trace_all<double>,
+                                                                                realcam::trace_all<float>,
+                                                                                realcam::expose_sensor,
+                                                                                realcam::film_points<float>,
+                                                                                realcam::film_points<double>,
+                                                                                realcam::aim_all};

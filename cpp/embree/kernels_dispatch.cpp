@@ -1,3 +1,4 @@
+// Chooses among the kernels that were built for several instruction sets.
 #include <cstdlib>
 #include <string>
 
@@ -27,21 +28,22 @@ std::vector<const realcam_kernels*> available_kernels() {
 
 namespace {
 
+/// Chooses the kernels as kernels() does, each time from scratch.
 const realcam_kernels& choose() {
     const auto list = available_kernels();
 #define SET(name) " " #name
     const std::string built = REALCAM_INSTRUCTION_SETS;
 #undef SET
-    if (list.empty()) throw DeviceError("this realcam is built for x86-64" + built + ", which this processor is not");
-    const char* asked = std::getenv("REALCAM_INSTRUCTION_SET");
-    if (!asked) return *list.back();
+    if (list.empty())
+        throw DeviceError("this realcam is built for x86-64" + built + ", which this processor does not support");
+    const char* requested = std::getenv("REALCAM_INSTRUCTION_SET");
+    if (!requested) return *list.back();
     std::string names;
     for (const realcam_kernels* kernel : list) {
-        if (kernel->instruction_set == std::string(asked)) return *kernel;
+        if (kernel->instruction_set == std::string(requested)) return *kernel;
         names += (names.empty() ? "" : ", ") + std::string(kernel->instruction_set);
     }
-    throw DeviceError("REALCAM_INSTRUCTION_SET is \"" + std::string(asked) + "\"; this build has for this machine " +
-                      names);
+    throw DeviceError("REALCAM_INSTRUCTION_SET is \"" + std::string(requested) + "\"; expected one of " + names);
 }
 
 }  // namespace

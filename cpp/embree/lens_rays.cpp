@@ -17,9 +17,11 @@
 namespace realcam {
 namespace {
 
-constexpr std::int64_t kChunk = 4096;
+constexpr std::int64_t kChunk = 4096;  ///< rays that one task traces
+/// Rays between two calls of KeepGoing, some 0.1 s.
+constexpr std::int64_t kRaysBetweenCalls = 1 << 20;
 
-/// Calls f(begin, end) for parts of [from, to), on all threads.
+/// Calls f(begin, end) for parts of [from, to), on all threads. `grain`: approximate size of a part.
 template <class I, class F>
 void in_parallel(I from, I to, I grain, F&& f) {
     // Uses the floating-point settings of the calling thread. Otherwise they would be those of whoever used this
@@ -29,11 +31,13 @@ void in_parallel(I from, I to, I grain, F&& f) {
         tbb::blocked_range<I>(from, to, grain), [&](const auto& range) { f(range.begin(), range.end()); }, context);
 }
 
+/// in_parallel with parts of kChunk.
 template <class F>
 void in_chunks(std::int64_t from, std::int64_t to, F&& f) {
     in_parallel(from, to, kChunk, f);
 }
 
+/// Traces all rays of a request with a kernel. Throws Cancelled.
 template <class T>
 void trace_with(const TraceRequest<T>& all, void (*kernel)(const void*), const KeepGoing& keep_going) {
     const auto trace = [&](std::int64_t first, std::int64_t last) {
@@ -48,13 +52,13 @@ void trace_with(const TraceRequest<T>& all, void (*kernel)(const void*), const K
         request.surface_index += first;
         kernel(&request);
     };
-    constexpr std::int64_t kBlock = 1 << 20;  // some 0.1 s
-    for (std::int64_t block = 0; block < all.count; block += kBlock) {
+    for (std::int64_t block = 0; block < all.count; block += kRaysBetweenCalls) {
         if (keep_going && !keep_going()) throw Cancelled();
-        in_chunks(block, std::min(block + kBlock, all.count), trace);
+        in_chunks(block, std::min(block + kRaysBetweenCalls, all.count), trace);
     }
 }
 
+/// find_film_points in the precision T, with a kernel for it. `lit`: entrance-pupil bounds of the bundle.
 template <class T>
 std::int64_t film_points_with(const LensSystem& lens, double wavelength_nm, const PointBundle& bundle,
                               const EntryRectangle& lit, EntryPattern pattern, std::int64_t count, double film_distance,
@@ -77,10 +81,9 @@ std::int64_t film_points_with(const LensSystem& lens, double wavelength_nm, cons
                                  0,
                                  at,
                                  0};
-    constexpr std::int64_t kBlock = 1 << 20;
-    for (request.first = 0; request.first < count; request.first += kBlock) {
+    for (request.first = 0; request.first < count; request.first += kRaysBetweenCalls) {
         if (keep_going && !keep_going()) throw Cancelled();
-        request.count = std::min(kBlock, count - request.first);
+        request.count = std::min(kRaysBetweenCalls, count - request.first);
         request.points = at + 2 * request.passed;
         kernel(&request);
     }

@@ -4,14 +4,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// SceneT of render_samples on a CPU: passes the lanes to Embree in packets of 16.
+/// The `scene` argument of render_samples on a CPU: intersects the rays of a block with Embree, in packets of 16.
 template <SceneKind scene_kind>
 struct PacketScene {
     RTCScene scene;
-    std::uint32_t instance_count;
-    RayOrder order;
-    std::uint64_t rays_traced;
+    std::uint32_t instance_count;  ///< number of the scene's instances; the static geometry has the next id
+    RayOrder order;  ///< of the next rays
+    std::uint64_t rays_traced;  ///< counter, incremented by each function
 
+    /// Finds the closest hits of the active rays. The hits of inactive rays are undefined.
     template <int N>
     void intersect(const SceneRays<N>& rays, Hits<N>& hits) {
         for (int first = 0; first < N; first += 16) {
@@ -38,19 +39,20 @@ struct PacketScene {
             }
             rays_traced += static_cast<std::uint64_t>(used);
         }
-        order = RayOrder::incoherent;  // rays after the camera rays are scattered
+        order = RayOrder::incoherent;  // all rays after the camera rays
     }
 
-    /// Sets `hidden` to 1 for occluded rays, and to 0 for others and for inactive rays.
+    /// Sets `is_occluded` to 1 for occluded rays, and to 0 for unoccluded and for inactive rays.
     template <int N>
-    void occluded(const SceneRays<N>& rays, std::int32_t (&hidden)[N]) {
+    void occluded(const SceneRays<N>& rays, std::int32_t (&is_occluded)[N]) {
         for (int first = 0; first < N; first += 16) {
             RTCRay16 packet;
             alignas(64) int valid[16];
             const int used = load(rays, first, packet, valid);
             if (used > 0) occluded16(valid, scene, order, &packet);
             REALCAM_LANES
-            for (int k = 0; k < 16; ++k) hidden[first + k] = packet.tfar[k] < 0.0f ? 1 : 0;  // set by Embree on a hit
+            for (int k = 0; k < 16; ++k)
+                is_occluded[first + k] = packet.tfar[k] < 0.0f ? 1 : 0;  // set by Embree on a hit
             rays_traced += static_cast<std::uint64_t>(used);
         }
     }

@@ -12,6 +12,7 @@
 namespace realcam {
 namespace {
 
+/// Computes some rows of a request on the calling thread.
 void expose_band(const SensorRequest& all, std::int32_t first_row, std::int32_t end_row) {
     SensorRequest band = all;
     const auto skipped = static_cast<std::ptrdiff_t>(first_row - all.first_row) * all.width;
@@ -26,8 +27,8 @@ void expose_band(const SensorRequest& all, std::int32_t first_row, std::int32_t 
 
 void expose_sensor(const SensorRequest& request, int threads, const KeepGoing& keep_going) {
     // For more threads than cores, TBB writes a warning to the console and starts only as many as there are cores.
-    const int most = tbb::this_task_arena::max_concurrency();
-    tbb::task_arena arena(threads > 0 ? std::min(threads, most) : most);
+    const int cores = tbb::this_task_arena::max_concurrency();
+    tbb::task_arena arena(threads > 0 ? std::min(threads, cores) : cores);
     const std::int32_t step = std::max(1, (1 << 21) / request.width);  // some 0.1 s of one core
     const std::int32_t end = request.first_row + request.row_count;
     for (std::int32_t first = request.first_row; first < end; first += step) {

@@ -4,8 +4,8 @@
 
 namespace realcam {
 
-/// Computes all rows of a request, on all cores or on `threads` of them (0: all). The results do not depend on the
-/// number of threads. Throws Cancelled.
+/// Exposes a sensor on the CPU: computes the raw values of all rows of a request. `threads`: number of threads; 0: one
+/// for each core. The results do not depend on it. Throws Cancelled.
 void expose_sensor(const SensorRequest& request, int threads = 0, const KeepGoing& keep_going = {});
 
 }  // namespace realcam

@@ -5,8 +5,9 @@
 namespace realcam {
 namespace {
 
+/// Returns the number of GPUs. Throws DeviceError if there is no driver or it is too old.
 int device_count() {
-    // If the driver is older than the runtime, `count` is not written, and only the error code tells.
+    // If the driver is older than the runtime, `count` is not written; only the error code shows it.
     int count = 0;
     check_cuda(cudaGetDeviceCount(&count), "looking for GPUs");
     return count;
@@ -20,7 +21,7 @@ std::vector<CudaDevice> cuda_devices() {
         const int count = device_count();
         for (int i = 0; i < count; ++i) {
             cudaDeviceProp p{};
-            check_cuda(cudaGetDeviceProperties(&p, i), "asking for its properties");
+            check_cuda(cudaGetDeviceProperties(&p, i), "querying its properties");
             devices.push_back({i, p.name, p.major, p.minor, p.multiProcessorCount, p.totalGlobalMem});
         }
     } catch (const DeviceError&) {

@@ -12,7 +12,8 @@ class OutOfDeviceMemory : public DeviceError {
     using DeviceError::DeviceError;
 };
 
-/// Throws DeviceError if a call of the CUDA runtime failed. `doing`: the operation, such as "copying the scene".
+/// Throws DeviceError if a call of the CUDA runtime failed. `doing`: the operation, such as "copying the scene to it",
+/// where "it" is the GPU; part of the message.
 inline void check_cuda(cudaError_t code, const std::string& doing) {
     if (code == cudaSuccess) return;
     cudaGetLastError();  // clears the error, so that it is not reported again if the device is still usable

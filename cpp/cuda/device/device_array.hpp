@@ -46,7 +46,7 @@ public:
     T* data() const { return data_; }
     std::size_t size() const { return size_; }
 
-    /// Contents are lost if the array grows. Throws DeviceError with the requested and the free memory.
+    /// Sets the number of elements. Contents are lost if the capacity grows. Throws OutOfDeviceMemory and DeviceError.
     void resize(std::size_t count) {
         if (count > capacity_) {
             cudaFree(std::exchange(data_, nullptr));
@@ -58,40 +58,46 @@ public:
         }
         size_ = count;
     }
+    // The next functions are asynchronous, in a stream of the array's device. They throw DeviceError.
+
+    /// Resizes the array, and copies `count` elements from host memory.
     void upload(const T* from, std::size_t count, cudaStream_t stream) {
         resize(count);
         if (count == 0) return;
         check_cuda(cudaMemcpyAsync(data_, from, count * sizeof(T), cudaMemcpyHostToDevice, stream), "copying to it");
     }
+    /// Copies all elements to host memory.
     void download(T* to, cudaStream_t stream) const {
         if (size_ == 0) return;
         check_cuda(cudaMemcpyAsync(to, data_, size_ * sizeof(T), cudaMemcpyDeviceToHost, stream), "copying from it");
     }
+    /// Sets all bytes to 0.
     void clear(cudaStream_t stream) {
         if (size_ == 0) return;
         check_cuda(cudaMemsetAsync(data_, 0, size_ * sizeof(T), stream), "clearing memory");
     }
 
 private:
-    [[noreturn]] static void throw_out_of_memory(std::size_t wanted) {
+    [[noreturn]] static void throw_out_of_memory(std::size_t requested) {
         cudaGetLastError();
         std::size_t free = 0, total = 0;
         cudaMemGetInfo(&free, &total);
         const auto mib = [](std::size_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB"; };
-        throw OutOfDeviceMemory("the GPU is out of memory: " + mib(wanted) + " more were requested, and " + mib(free) +
-                                " of " + mib(total) + " are free");
+        throw OutOfDeviceMemory("the GPU is out of memory: " + mib(requested) + " more were requested, and " +
+                                mib(free) + " of " + mib(total) + " are free");
     }
 
     T* data_ = nullptr;
     std::size_t capacity_ = 0, size_ = 0;
 };
 
-/// Arrays of any type on one device. Allocations are reused after restart().
+/// Arrays of any element type on one device, for copies of a view's arrays. Allocations are reused after restart().
 class DeviceArrays {
 public:
     /// Makes subsequent copies overwrite the previous ones.
     void restart() { next_ = 0; }
 
+    /// Copies an array from the host asynchronously, and returns the copy's address on the device.
     template <class T>
     const T* copy(const T* from, std::size_t count, cudaStream_t stream) {
         if (next_ == arrays_.size()) arrays_.emplace_back();

@@ -16,17 +16,21 @@ std::optional<int> gpu_of_address(const void* address);
 /// and the per-thread default stream. Throws DeviceError.
 void wait_for_gpu(int ordinal, std::optional<std::uintptr_t> stream);
 
+/// Type of an array's elements.
 enum class NumberType { float32, float64, int32, uint8 };
 
+/// Returns the size of an element in bytes.
 constexpr std::size_t size_of(NumberType type) {
     return type == NumberType::float64 ? 8 : type == NumberType::uint8 ? 1 : 4;
 }
 
-/// Array in a GPU's memory, in C order, that can be shared with other libraries. Copies share the memory, which the
-/// last one frees, on any thread. No write to it is pending.
+/// Array in a GPU's memory, in C order, that can be shared with other libraries. Copies share the memory; the last copy
+/// to be destroyed frees it, on whatever thread that is. All writes to the array have completed before it is
+/// constructed.
 class SharedDeviceArray {
 public:
-    /// Use `share` for a DeviceArray. The deleter of `memory` must not throw.
+    /// `ordinal`: of the GPU; `shape`: number of elements along each axis. The deleter of `memory` must not throw. For
+    /// a DeviceArray, use share() in share_array.hpp.
     SharedDeviceArray(std::shared_ptr<void> memory, int ordinal, NumberType type, std::vector<std::int64_t> shape)
         : memory_(std::move(memory)), ordinal_(ordinal), type_(type), shape_(std::move(shape)) {}
 
@@ -41,7 +45,7 @@ public:
         return product;
     }
 
-    /// Copies the whole array to host memory. Throws DeviceError.
+    /// Copies the whole array to host memory, of bytes() bytes. Throws DeviceError.
     void download(void* to) const;
     /// Returns a deep copy on the same GPU. Throws DeviceError.
     SharedDeviceArray duplicate() const;

@@ -9,7 +9,8 @@
 namespace realcam {
 
 /// Flag that makes the kernels of one GPU end early. Their threads read it before each sample, from the GPU's memory,
-/// because reading host memory takes longer than a sample. Created and destroyed with that GPU current.
+/// because reading host memory takes longer than a sample. Must be created and destroyed while that GPU is the current
+/// device.
 class StopFlag {
 public:
     explicit StopFlag(int ordinal) : ordinal_(ordinal), values_(2), flag_(1), never_(1) {
@@ -38,8 +39,10 @@ public:
         const CurrentDevice current(ordinal_);
         write(false);
     }
+    /// Returns true if the flag is set; may be called from any thread.
     bool is_raised() const { return raised_ > 0; }
 
+    /// The flag in the GPU's memory: 1 if it is set, else 0.
     const volatile int* data() const { return flag_.data(); }
     /// A flag that is never raised.
     const volatile int* never() const { return never_.data(); }
@@ -56,7 +59,7 @@ private:
 
     int ordinal_;
     CudaStream stream_;  // separate from the stream of the work that it stops
-    PinnedArray<int> values_;
+    PinnedArray<int> values_;  // 0 and 1, to be copied to the flag
     DeviceArray<int> flag_, never_;
     std::mutex mutex_;
     std::atomic<int> raised_{0};

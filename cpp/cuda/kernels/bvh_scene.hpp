@@ -4,13 +4,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The SceneT argument of render_samples on a GPU: one ray per thread. `instanced`: true if the scene has instances.
+/// The `scene` argument of render_samples on a GPU: traces one ray per thread. `instanced`: true if the scene has
+/// instances.
 template <SceneKind scene_kind, bool instanced>
 struct BvhScene {
     const SceneView& scene;
     const SceneBvhView& bvh;
-    std::uint32_t rays_traced;
+    std::uint32_t rays_traced;  ///< counter, incremented by each function
 
+    /// Finds the closest hit of an active ray.
     REALCAM_INLINE void intersect(const SceneRays<1>& rays, Hits<1>& hits) {
         if (!rays.active[0]) return;
         const Hit hit = closest_hit<instanced>(bvh, rays.origin[0], rays.direction[0], rays.far[0], scene_ray(rays));
@@ -21,6 +23,7 @@ struct BvhScene {
         hits.instance[0] = hit.instance;
         ++rays_traced;
     }
+    /// Sets `hidden` to 1 if the ray is active and occluded, else to 0.
     REALCAM_INLINE void occluded(const SceneRays<1>& rays, std::int32_t (&hidden)[1]) {
         hidden[0] = 0;
         if (!rays.active[0]) return;
@@ -29,6 +32,7 @@ struct BvhScene {
     }
 
 private:
+    /// Returns what the traversal must know of the ray: time and random bits, if the scene kind needs them.
     REALCAM_INLINE auto scene_ray(const SceneRays<1>& rays) const {
         if constexpr (scene_kind == SceneKind::any)
             return AnySceneRay{scene, rays.number[0], rays.time[0]};

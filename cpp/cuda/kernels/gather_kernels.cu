@@ -6,7 +6,8 @@
 namespace realcam {
 namespace {
 
-/// One kernel for all scene kinds: these samples are few, and kernels with whole paths take long to compile.
+/// Traces ghosts of objects; a thread takes one sample. One kernel for all scene kinds: these samples are few, and
+/// kernels with whole paths take long to compile.
 template <LensKind lens_kind, bool has_wavelengths>
 __global__ void __launch_bounds__(kGhostBlock, 2) gather_ghosts_of(const __grid_constant__ GhostJob job) {
     if (is_stopped(job)) return;

@@ -6,7 +6,7 @@
 
 namespace realcam {
 
-/// Must be called by all threads of a block.
+/// Returns true if the launch is stopped. All threads of a block must call it, and get the same result.
 __device__ inline bool is_stopped(const GhostJob& job) {
     __shared__ int stopped;
     if (threadIdx.x == 0) stopped = *job.stop;
@@ -14,10 +14,12 @@ __device__ inline bool is_stopped(const GhostJob& job) {
     return stopped != 0;
 }
 
+/// Returns the block of samples that this thread block takes.
 __device__ inline GhostRange range_of(const GhostJob& job) {
     return {job.first_block + blockIdx.x, job.seed};
 }
 
+/// Callback splat(pixel, irradiance, dither) of splat_ghosts: adds to the film of the block.
 struct GhostSplat {
     const GhostJob& job;
 
@@ -31,6 +33,7 @@ struct GhostSplat {
     }
 };
 
+/// Counts the block as complete.
 __device__ inline void count_block(const GhostJob& job) {
     if (threadIdx.x == 0) atomicAdd(job.blocks_done + film_of_block(range_of(job).first_block, job.films), 1ull);
 }

@@ -7,7 +7,8 @@
 namespace realcam {
 namespace {
 
-/// Separate from the ghost kernel because of its different register usage.
+/// Traces the images of lights; a thread takes one sample. Separate from the ghost kernel because of its different
+/// register usage.
 template <LensKind lens_kind, SceneKind scene_kind, bool instanced, bool has_wavelengths>
 __global__ void __launch_bounds__(kGhostBlock, 2) trace_lights_of(const __grid_constant__ GhostJob job) {
     if (is_stopped(job)) return;
@@ -20,7 +21,7 @@ __global__ void __launch_bounds__(kGhostBlock, 2) trace_lights_of(const __grid_c
 }  // namespace
 
 void launch_trace_lights(const GhostJob& job, cudaStream_t stream) {
-    const bool plain = kind_of(job.scene, job.camera) == SceneKind::plain && job.scene.instance_count == 0;
+    const bool plain = kernel_scene_kind(job.scene, job.camera) == SceneKind::plain && job.scene.instance_count == 0;
     const bool has_wavelengths = job.ghosts.effects.have_wavelengths();
     constexpr LensKind round = LensKind::rotational, any = LensKind::any;
     auto* kernel = plain ? (has_wavelengths ? trace_lights_of<round, SceneKind::plain, false, true>

@@ -9,18 +9,20 @@
 namespace realcam {
 namespace {
 
-/// Calls take(channel, exposure) for the channels of a pixel.
-template <class Take>
-__device__ void expose(const FilmView& film, std::int64_t pixel, double exposure_time_s, Take&& take) {
+/// Calls visit(channel, exposure in lux seconds) for the channels of a pixel.
+template <class Visit>
+__device__ void expose(const FilmView& film, std::int64_t pixel, double exposure_time_s, Visit&& visit) {
     PixelNeighbourhood around;
-    if (film.balance.any()) {
+    if (film.control_variates.any()) {
         const int column = static_cast<int>(pixel % film.width), row = static_cast<int>(pixel / film.width);
         around = PixelNeighbourhood::around(column, film.width, [&](int x) { return film.column_around(x, row); });
     }
-    film.for_channels(pixel, around, [&](int c, double ghosts, double balance) {
-        take(c, film.pixels[pixel].exposure(c, exposure_time_s, ghosts, balance));
+    film.for_channels(pixel, around, [&](int c, double splatted, double factor) {
+        visit(c, film.pixels[pixel].exposure(c, exposure_time_s, splatted, factor));
     });
 }
+
+// In the next four kernels, a thread processes one pixel.
 
 __global__ void develop(FilmView film, double exposure_time_s, float* exposure, float* depth) {
     const std::int64_t i = thread_index();
@@ -47,21 +49,23 @@ __global__ void merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels
     if (i < pixels) sums[i] += other[i];
 }
 
-/// Entry of the table of compiled kernels.
+/// A compiled render kernel and the jobs that it can run.
 struct CompiledKernel {
-    int effects;
+    int effects;  ///< index in kCompiledEffects
     LensKind lens;
     SceneKind scene;
     bool halves;
-    RenderKernel (*of)(bool instanced);
+    RenderKernel (*kernel_of)(bool instanced);  ///< instance of render_kernel_of
 
+    /// Returns true if the kernel can run a job.
     bool serves(const RenderJob& job) const {
-        const SceneKind wanted = kind_of(job.scene, job.camera);
+        const SceneKind scene_kind = kernel_scene_kind(job.scene, job.camera);
         return halves == job.adds_half && effects == number_of(job.camera.effects) &&
-               lens >= lens_kind_of(job.camera) && (scene == SceneKind::any || scene == wanted);
+               lens >= kernel_lens_kind(job.camera) && (scene == SceneKind::any || scene == scene_kind);
     }
 };
 
+/// All compiled kernels; the list is made by cmake/RealcamRenderKernels.cmake.
 constexpr CompiledKernel kKernels[] = {
 #define REALCAM_RENDER_KERNEL(effects, lens, scene, halves) \
     {effects, LensKind::lens, SceneKind::scene, halves,     \
@@ -76,7 +80,7 @@ constexpr CompiledKernel kKernels[] = {
 RenderKernel kernel_for(const RenderJob& job) {
     const CompiledKernel* kernel = kKernels;
     while (!kernel->serves(job)) ++kernel;
-    return kernel->of(job.scene.instance_count > 0);
+    return kernel->kernel_of(job.scene.instance_count > 0);
 }
 
 }  // namespace

@@ -13,10 +13,11 @@
 
 namespace realcam {
 
-/// Counts of all launches.
+/// Counters that all launches since the last clear_counts add to, in the GPU's memory.
 struct RenderCounts {
-    unsigned long long sampled_rays, passed_rays, scene_rays;
-    unsigned long long lens_clocks, scene_clocks, all_clocks;  ///< sums over the threads that measure
+    unsigned long long sampled_rays, passed_rays, scene_rays;  ///< see RenderStats
+    unsigned long long lens_clocks, scene_clocks, all_clocks;  ///< clock cycles by RenderStage and of all stages,
+                                                               ///< summed over a sample of the threads
 
     RenderCounts& operator+=(const RenderCounts& other) {
         sampled_rays += other.sampled_rays;
@@ -33,30 +34,33 @@ struct RenderCounts {
     }
 };
 
-/// Parameters of a launch over some samples of some rows of pixels. All pointers are device pointers.
+/// Parameters of a launch of the render kernel: scene, camera, and a range of samples of the pixels of some rows. All
+/// pointers are device pointers.
 struct RenderJob {
     SceneView scene;
     SceneBvhView bvh;
     CameraView camera;
     PixelSum* sums;  ///< for the rows of the job, row by row; results are added
     RenderCounts* counts;
-    const volatile int* stop;  ///< if not 0, no thread starts another sample
+    const volatile int* stop;  ///< if the value is not 0, no thread starts another sample
     PathSettings path;
     std::uint32_t seed, first_sample, sample_count;
-    /// Sample counts of individual pixels, which include the first `pixels_taken` samples, already taken; null: all
-    /// pixels take sample_count.
-    const std::uint32_t* of_pixels;
+    /// PixelCounts for the rows of the job: `counts` and `taken`. Null: all pixels take sample_count.
+    const std::uint32_t* pixel_counts;
     std::uint32_t pixels_taken;
     int first_row, row_count;  ///< rows of the picture
-    bool adds_squares, adds_half, balances;  ///< if one of them is set, PixelSum::auxiliary is summed for it
+    bool adds_squares, adds_half, adds_excess;  ///< at most one is true: the use of PixelSum::auxiliary
 };
 
 /// Throws UnsupportedGpu if the current device cannot run this build's code.
 void check_render_code();
 
-/// Launches a job. `pixels`: the number of pixels by which the threads per pixel are chosen: that of the job, or that
-/// of the film if the order of summation must equal that of a job over the whole film. Throws DeviceError.
+/// Launches a job asynchronously. `pixels`: number of pixels by which the number of threads per pixel is chosen. That
+/// is the number of the job's pixels, or of the film's if the order of summation must be that of a job over the whole
+/// film. Throws DeviceError.
 void launch_render(const RenderJob& job, std::int64_t pixels, cudaStream_t stream);
+
+// The next functions launch kernels asynchronously. All arrays are in the GPU's memory. They throw DeviceError.
 
 /// Develops a film to exposure (3 per pixel, lux seconds) and depth (metres).
 void launch_develop(const FilmView& film, double exposure_time_s, float* exposure, float* depth, cudaStream_t stream);
@@ -68,13 +72,14 @@ void launch_develop_codes(const FilmView& film, double exposure_time_s, double i
 /// Writes the number of samples of each pixel.
 void launch_count(const PixelSum* sums, std::int64_t pixels, std::int64_t* counts, cudaStream_t stream);
 
-/// sums += other, for each of `pixels`.
+/// Adds the sums of another film to those of a film, for `pixels` pixels.
 void launch_merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels, cudaStream_t stream);
 
+/// Render kernel; the int is the number of threads per pixel.
 using RenderKernel = void (*)(RenderJob, int);
 
-/// Returns the kernel for a lens kind, a scene kind and the index of a set of effects. `instanced`: true if the scene
-/// has instances. `halves`: true if it sums the halves of dual pixels.
+/// Returns the kernel for a lens kind, a scene kind and a set of effects, given by its index in kCompiledEffects.
+/// `instanced`: true if the scene has instances. `halves`: true if the kernel sums dual-pixel halves.
 template <LensKind lens_kind, SceneKind scene_kind, int effects, bool halves>
 RenderKernel render_kernel_of(bool instanced);
 

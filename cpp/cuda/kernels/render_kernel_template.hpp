@@ -15,9 +15,9 @@ namespace render_kernel_detail {
 /// of the spills.
 constexpr int kBlocksPerMultiprocessor = 6;
 
-/// Clock cycles that the first thread of every sixteenth block spends in each stage. The test whether a block measures
-/// is uniform over the block and costs two instructions. Counts are in shared memory, because no registers are free
-/// while a ray is traced.
+/// Probe of advance_paths that measures the clock cycles of each stage, in the first thread of every sixteenth block.
+/// The test whether a thread measures costs two instructions. Counts are in shared memory, because no registers are
+/// free while a ray is traced.
 class StageClock {
 public:
     struct Count {
@@ -36,6 +36,7 @@ public:
         count_.since = time;
         count_.stage = next;
     }
+    /// Adds the cycles to the counters of all launches.
     __device__ void report(RenderCounts* counts) {
         if (!is_running()) return;
         enter(RenderStage::other);
@@ -57,14 +58,17 @@ private:
     Count& count_;
 };
 
-/// Sums of a thread for its pixel, in shared memory because no registers are free.
+/// Sums of each thread for its pixel, in shared memory because no registers are free: the doubles of PixelSum. Index:
+/// irradiance 0 to 2, depth 3, met 4, auxiliary 5 to 7.
 struct ThreadSums {
-    double of[8][kBlockSize];
+    double sums[8][kBlockSize];
 
-    __device__ double& operator[](int i) { return of[i][threadIdx.x]; }
+    /// Returns one of the sums of this thread.
+    __device__ double& operator[](int i) { return sums[i][threadIdx.x]; }
     __device__ void clear() {
         for (int i = 0; i < 8; ++i) (*this)[i] = 0;
     }
+    /// Adds a sample. `has_auxiliary`: true if PixelSum::auxiliary is in use.
     __device__ void add(const PixelSum& sample, bool has_auxiliary) {
         for (int c = 0; c < 3; ++c) (*this)[c] += sample.irradiance[c];
         (*this)[3] += sample.depth;
@@ -72,7 +76,7 @@ struct ThreadSums {
         if (!has_auxiliary) return;
         for (int c = 0; c < 3; ++c) (*this)[5 + c] += sample.auxiliary[c];
     }
-    /// Sum over all threads of the pixel, without the sample counts.
+    /// Returns the sum over all threads of the pixel, without the sample counts. `lanes`: number of these threads.
     __device__ PixelSum of_pixel(int lanes) {
         PixelSum sum{};
         for (int c = 0; c < 3; ++c) sum.irradiance[c] = sum_of_neighbours((*this)[c], lanes);
@@ -83,9 +87,9 @@ struct ThreadSums {
     }
 };
 
-/// Adds a contribution from a neighbouring pixel. Contributions arrive in any order; rounded to integer multiples of a
-/// unit, up to 2^53 of them, they have the same sum in every order. `dither`: a random number from 0 to 1, which makes
-/// the rounding unbiased.
+/// Adds a contribution to a pixel that several threads may add to. These arrive in any order; as they are rounded to
+/// integer multiples of 2^-24, up to 2^53 units in total, their sum is the same in every order. `dither`: random number
+/// from 0 to 1, which makes the rounding unbiased.
 __device__ inline void add_shared(double& sum, double value, float dither) {
     atomicAdd(&sum, 0x1p-24 * floor(0x1p24 * value + static_cast<double>(dither)));
 }
@@ -109,19 +113,19 @@ __device__ inline void add_shared(const SampleBlock<1>& block, const PathResults
     }
 }
 
-/// Number of samples that a pixel of the job takes.
+/// Returns the number of samples that a pixel of the job takes (PixelCounts::of).
 __device__ inline std::uint32_t samples_of(const RenderJob& job, std::int64_t pixel) {
-    if (!job.of_pixels) return job.sample_count;
-    const std::uint32_t wanted = job.of_pixels[pixel];
-    return wanted > job.pixels_taken ? min(wanted - job.pixels_taken, job.sample_count) : 0;
+    if (!job.pixel_counts) return job.sample_count;
+    const std::uint32_t count = job.pixel_counts[pixel];
+    return count > job.pixels_taken ? min(count - job.pixels_taken, job.sample_count) : 0;
 }
 
-/// Sums PixelSum::auxiliary of a sample. Returns true if the job uses them.
+/// Sets PixelSum::auxiliary of a sample: its excess or its squares. Returns true if the job uses these.
 template <Effects effects>
 __device__ inline bool add_auxiliary(const RenderJob& job, const PathResultsWith<1, effects>& results,
                                      PixelSum& sample) {
     if constexpr (effects.have_wavelengths()) {
-        if (job.balances) {
+        if (job.adds_excess) {
             sample.add_excess(results.excess[0]);
             return true;
         }
@@ -130,6 +134,7 @@ __device__ inline bool add_auxiliary(const RenderJob& job, const PathResultsWith
     return job.adds_squares;
 }
 
+/// Renders samples of pixels. Each pixel has `lanes_per_pixel` threads, which share its samples.
 template <LensKind lens_kind, SceneKind scene_kind, int effects_number, bool instanced, bool halves = false>
 __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {

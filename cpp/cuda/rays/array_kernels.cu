@@ -6,6 +6,8 @@
 namespace realcam {
 namespace {
 
+// The kernels of array_kernels.hpp; a thread converts one number or one ray.
+
 __global__ void widen(const float* from, std::int64_t count, double* to) {
     if (thread_index() < count) to[thread_index()] = static_cast<double>(from[thread_index()]);
 }

@@ -16,12 +16,14 @@
 namespace realcam {
 namespace {
 
-constexpr int kRounds = 5;
+constexpr int kRounds = 5;  ///< number of launches; the fastest one counts
 
+/// Ray of a benchmark: in the lens frame (mm) or in render space (m).
 struct BenchRay {
     Vec3f origin, direction;
 };
 
+/// Returns the block with one sample of a pixel.
 __device__ SampleBlock<1> block_of(const CameraView& camera, std::int32_t pixel, std::uint32_t sample) {
     SampleBlock<1> block;
     block.column[0] = pixel % camera.width;
@@ -32,6 +34,8 @@ __device__ SampleBlock<1> block_of(const CameraView& camera, std::int32_t pixel,
     return block;
 }
 
+/// Generates `samples` camera rays per thread, and counts those that pass the lens. `sink`: keeps the compiler from
+/// removing the work.
 template <LensKind lens_kind>
 __global__ void generate(const __grid_constant__ CameraView camera, int samples, unsigned long long* passed,
                          float* sink) {
@@ -59,6 +63,7 @@ __global__ void sample_lens_rays(const __grid_constant__ CameraView camera, Benc
     rays[pixel] = {ray.origin, ray.direction};
 }
 
+/// Traces each ray `repeats` times through the lens, slightly shifted each time.
 template <LensKind lens_kind>
 __global__ void trace(const __grid_constant__ CameraView camera, const BenchRay* rays, int repeats,
                       unsigned long long* passed, float* sink) {
@@ -82,6 +87,7 @@ __global__ void trace(const __grid_constant__ CameraView camera, const BenchRay*
     if (sum == 12345.678f) *sink = sum;
 }
 
+/// Writes one camera ray per pixel.
 __global__ void camera_rays(const __grid_constant__ CameraView camera, BenchRay* rays) {
     const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
     if (pixel >= camera.width * camera.height) return;
@@ -110,6 +116,7 @@ __global__ void bounce(const __grid_constant__ SceneView scene, SceneBvhView bvh
     rays[i] = {point.position + point.self_offset * point.geometric_normal, direction};
 }
 
+/// Finds the closest hit of each ray.
 template <bool instanced>
 __global__ void hit_all(SceneBvhView bvh, const BenchRay* rays, int count, float* distances) {
     const int i = static_cast<int>(blockIdx.x * kBlockSize + threadIdx.x);
@@ -118,7 +125,7 @@ __global__ void hit_all(SceneBvhView bvh, const BenchRay* rays, int count, float
     distances[i] = closest_hit<instanced>(bvh, ray.origin, ray.direction, kFarAway).distance;
 }
 
-/// Work items per second, with `count` items per launch, in the best of kRounds launches.
+/// Returns the work items per second, with `count` items per launch, in the best of kRounds launches.
 template <class Launch>
 double rate_of(cudaStream_t stream, double count, Launch&& launch) {
     CudaEvent start, end;
@@ -151,7 +158,7 @@ LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer trace
     DeviceArray<BenchRay> rays(static_cast<std::size_t>(pixels));
     passed.clear(stream);
 
-    constexpr int kSamples = 64;
+    constexpr int kSamples = 64;  // rays per thread
     LensRayRates rates{};
     const double count = static_cast<double>(pixels) * kSamples;
     rates.generated = rate_of(stream, count, [&] {

@@ -9,6 +9,7 @@
 namespace realcam {
 namespace {
 
+/// Traces rays in the precision T; the arrays are in the GPU's memory.
 template <class T>
 void trace_with(int ordinal, const TracePath<T>& path, std::int64_t count, const double* origins,
                 const double* directions, const TracedRays& out) {

@@ -9,7 +9,7 @@
 namespace realcam {
 namespace {
 
-/// Array as float64: the original, or a converted copy if it is float32.
+/// An array as float64: the original, or a converted copy if it is float32.
 class Doubles {
 public:
     Doubles(const ForeignNumbers& numbers, std::int64_t count, cudaStream_t stream)
@@ -49,11 +49,11 @@ CameraRayArrays generate_ray_arrays(int ordinal, const CameraSetup& setup, std::
                                     RayRange range) {
     const Camera& camera = setup.camera();
     const std::int64_t count = range.count;
-    // Above this limit the size in bytes would overflow.
-    if (count > (std::int64_t{1} << 48))
+    constexpr std::int64_t kMaxRays = std::int64_t{1} << 48;  // beyond this, sizes in bytes would overflow
+    if (count > kMaxRays)
         throw OutOfDeviceMemory(
             std::to_string(count) +
-            " rays are more than any GPU's memory holds; ask for fewer spp, or take them in chunks");
+            " rays are more than any GPU's memory holds; use fewer spp, or generate them in chunks");
     const CurrentDevice current(ordinal);
     const CudaStream stream;
     const auto rays = static_cast<std::size_t>(count);

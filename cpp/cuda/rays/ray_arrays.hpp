@@ -11,25 +11,25 @@ class CameraSetup;
 /// Array in a GPU's memory that another library owns: float32 or float64, in C order.
 struct ForeignNumbers {
     const void* data;
-    int ordinal;
+    int ordinal;  ///< ordinal of the GPU
     NumberType type;
 };
 
-/// Results like TracedRays, in owned device arrays.
+/// Results of traced rays as TracedRays, in owned arrays of a GPU.
 struct TracedArrays {
-    SharedDeviceArray origins, directions, optical_path;
-    SharedDeviceArray status, surface_index;
+    SharedDeviceArray origins, directions, optical_path;  ///< float64
+    SharedDeviceArray status, surface_index;  ///< int32
 };
 
-/// Like trace_rays_on_device. Both inputs are arrays of count x 3 numbers on the same GPU, which traces them. Throws
-/// InputError and DeviceError.
+/// Traces rays through a lens like trace_rays_on_device, and returns the results in new arrays. `origins` and
+/// `directions` have count x 3 numbers and lie on the same GPU, which traces them. Throws InputError and DeviceError.
 TracedArrays trace_arrays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
                           int surface_count, std::int64_t count, ForeignNumbers origins, ForeignNumbers directions);
 
-/// Results like those of generate_camera_rays on the CPU, in owned device arrays.
+/// Camera rays like those of generate_camera_rays on the CPU, in owned arrays of a GPU.
 struct CameraRayArrays {
     SharedDeviceArray origins_m, directions, weights, wavelengths_nm, times_s;
-    SharedDeviceArray pixels;  ///< row * width + column
+    SharedDeviceArray pixels;  ///< pixel of each ray: row * width + column
 };
 
 /// Generates camera rays on a GPU. Throws InputError and DeviceError.

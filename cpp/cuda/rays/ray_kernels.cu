@@ -1,3 +1,4 @@
+// Kernels for rays: the CPU's loops over blocks of rays, with one ray (a block of one lane) per thread.
 #include "../device/cuda_error.hpp"
 #include "../device/launch_grid.hpp"
 #include "ray_kernels.hpp"
@@ -15,6 +16,7 @@ __global__ void __launch_bounds__(kBlockSize) generate(const __grid_constant__ R
     if (thread_index() < request.count()) generate_rays_of<lens_kind, 1>(request, thread_index());
 }
 
+/// Launches the trace of a request in the precision T.
 template <class T>
 void launch(const TraceRequest<T>& request, cudaStream_t stream) {
     if (request.count == 0) return;
@@ -33,6 +35,7 @@ void launch_trace(const TraceRequest<float>& request, cudaStream_t stream) {
 
 void launch_generate(const RayRequest& request, cudaStream_t stream) {
     if (request.count() == 0) return;
+    // Spherical lenses use the kernel for rotationally symmetric ones: this is not worth a kernel of its own.
     auto* const kernel = has_any_lens(request.camera) ? generate<LensKind::any> : generate<LensKind::rotational>;
     kernel<<<blocks_for(request.count()), kBlockSize, 0, stream>>>(request);
     check_cuda(cudaGetLastError(), "starting to generate rays");

@@ -23,6 +23,8 @@
 namespace realcam {
 namespace {
 
+/// Session on GPUs of this machine. The first one (front) holds the film and takes the splatted light and the layers;
+/// all GPUs take samples of the pixels.
 class CudaSession final : public Session, public DevicePictures {
 public:
     CudaSession(const std::vector<int>& ordinals, PupilTracer tracer) : tracer_(std::move(tracer)) {
@@ -44,7 +46,7 @@ public:
     std::string name() const override { return "GPU (" + name_ + ")"; }
 
     DevicePicture device_picture(const KeepGoing& keep_going) override {
-        return of_all_collected(keep_going, [&] { return develop_here(); });
+        return with_all_samples(keep_going, [&] { return develop_on_gpu(); });
     }
 
 private:
@@ -54,13 +56,14 @@ private:
         setup_ = last_setup_.make(camera, tracer_, settings.lens_effects(), start);
         const auto prepare = [&] { scene_.place(scene, camera, [&] { return !stop; }); };
         if (scene_.change_to(scene, camera) == SceneChange::all) {
-            run_heeding(prepare, keep_going, stop);
+            run_interruptibly(prepare, keep_going, stop);
             if (stop) throw Cancelled();
         } else {
             prepare();  // takes less time than starting a thread
         }
         CameraView view = setup_->view(scene_.placed().origin_m(), scene_.placed().moves());
-        traced_lights_ = traced_lights(scene_.placed().view(), view, *setup_, settings.lights_traced(), tracer_);
+        traced_lights_ =
+            traced_lights(scene_.placed().view(), view, *setup_, settings.effective_light_tracing(), tracer_);
         view.traced_lights = traced_lights_.view();
         for (const auto& renderer : renderers_) renderer->set_camera(view);
         set_splats(view);
@@ -68,6 +71,7 @@ private:
 
     bool has_new_pupil() const override { return setup_->has_new_pupil(); }
 
+    /// Sets the sources of splatted light on the first GPU.
     void set_splats(const CameraView& camera) { front().set_splats(splat_sources(camera)); }
 
     std::vector<SplatSource> splat_sources(const CameraView& camera) const {
@@ -77,6 +81,7 @@ private:
         return sources;
     }
 
+    /// Number of films for each source of splatted light (GhostFilmView).
     int splat_films() const { return settings().layers.has(Layer::variance) ? 2 : 1; }
 
     void clear() override {
@@ -90,13 +95,13 @@ private:
         front().clear_splats(width(), height(), splat_films());
     }
 
-    void take(const SampleRange& range, const PixelCounts& counts, bool traces_lights, std::atomic<std::int64_t>& done,
-              OwnStop& stop) override {
+    void take_samples(const SampleRange& range, const PixelCounts& counts, bool traces_lights,
+                      std::atomic<std::int64_t>& done, OwnStop& stop) override {
         if (rows_ == 0) lay_out_film();
         const auto exposing = std::chrono::steady_clock::now();
         if (settings().pupil_sampling == PupilSampling::pixel) {
             for (const SampleRange& pass : learning_passes(range)) {
-                expose_bands(pass, counts.behind(pass.first - range.first), stop, done);
+                expose_bands(pass, counts.after(pass.first - range.first), stop, done);
                 for (const auto& renderer : renderers_) renderer->learn_pupils();
             }
         } else {
@@ -120,68 +125,69 @@ private:
     std::vector<SplatFilm> take_splats(const SampleRange& range, OwnStop&) override {
         CameraView camera = placed_camera().view;
         camera.traced_lights = traced_lights_.view();
-        return front().splats_apart(splat_sources(camera), splat_films(), range, settings().path());
+        return front().trace_splats(splat_sources(camera), splat_films(), range, settings().path());
     }
 
-    void see_layers(const FilmRegion& region, const SampleRange& range, std::vector<LayerSum>& film,
-                    std::atomic<std::int64_t>& done, OwnStop& stop) override {
-        std::vector<LayerSum> seen;
+    void trace_layers(const FilmRegion& region, const SampleRange& range, std::vector<LayerSum>& film,
+                      std::atomic<std::int64_t>& done, OwnStop& stop) override {
+        std::vector<LayerSum> sums;
         for_bands(region.row, region.height, stop, [&](int row, int rows) {
             const auto columns = static_cast<std::size_t>(width());
-            seen.resize(static_cast<std::size_t>(rows) * columns);
-            front().see_layers({row, rows, range.first, range.count}, range.seed, seen.data(), done);
+            sums.resize(static_cast<std::size_t>(rows) * columns);
+            front().trace_layers({row, rows, range.first, range.count}, range.seed, sums.data(), done);
             for (int r = 0; r < rows; ++r)
                 for (int column = region.column; column < region.column + region.width; ++column)
                     film[region.index(column, row + r)] +=
-                        seen[static_cast<std::size_t>(r) * columns + static_cast<std::size_t>(column)];
+                        sums[static_cast<std::size_t>(r) * columns + static_cast<std::size_t>(column)];
         });
     }
 
-    void see_pixel_centre_surfaces(std::vector<PixelCentreSurface>& film, OwnStop& stop) override {
+    void trace_pixel_centres(std::vector<PixelCentreSurface>& film, OwnStop& stop) override {
         for_bands(0, height(), stop, [&](int row, int rows) {
-            front().see_pixel_centre_surfaces({row, rows, 0, 1}, &film[whole_film().index(0, row)]);
+            front().trace_pixel_centres({row, rows, 0, 1}, &film[whole_film().index(0, row)]);
         });
     }
 
     std::vector<LayerImage> develop_auxiliary_layers() override {
         const std::vector<SplatFilm> splats = front().download_splats();
         FilmSums downloaded;
-        if (fits()) {
+        if (film_fits()) {
             downloaded.resize(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
             front().download_film(downloaded.data());
         }
-        return developed_auxiliary_layers(on_host(fits() ? downloaded : film_, splats), settings().layers,
+        return developed_auxiliary_layers(on_host(film_fits() ? downloaded : film_, splats), settings().layers,
                                           film_exposure_s());
     }
 
-    std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
-                                     std::shared_ptr<void>) override {
-        if (renderers_.size() > 1) throw InputError("frames are taken on one GPU; use one, such as device=\"cuda:0\"");
+    std::shared_ptr<LiveFrame> start_frame(const std::vector<SampleRange>& ranges, ToneCurve curve,
+                                           std::shared_ptr<void>) override {
+        if (renderers_.size() > 1)
+            throw InputError("frames are taken on a single GPU; use device=\"cuda:0\", for example");
         const CurrentDevice current(front().ordinal());
         if (rows_ == 0) {
             front().clear_film(static_cast<std::int64_t>(width()) * height());
             rows_ = height();
         }
-        if (!fits()) throw DeviceError("the film is larger than the GPU's memory");
+        if (!film_fits()) throw DeviceError("the film is larger than the GPU's memory");
         for (const SampleRange& range : ranges) {
             front().add({0, height(), range.first, range.count}, settings_of(range));
             front().splat(range, settings().path());
         }
         const std::shared_ptr<DeviceFrame> frame =
             make_on_device<DeviceFrame>(front().ordinal(), camera().film, samples(), pool_);
-        frame->develop(front(), balance(), film_exposure_s(), camera().iso, curve);
+        frame->develop(front(), control_variates(), film_exposure_s(), camera().iso, curve);
         return frame;
     }
 
     Image develop() override {
         Image image;
-        if (fits()) {
+        if (film_fits()) {
             image.width = width();
             image.height = height();
             const std::size_t pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
-            image.exposure = exposures_.take(3 * pixels);
-            image.depth = depths_.take(pixels);
-            front().develop(balance(), film_exposure_s(), image.exposure.data(), image.depth.data());
+            image.exposure = exposures_.acquire(3 * pixels);
+            image.depth = depths_.acquire(pixels);
+            front().develop(control_variates(), film_exposure_s(), image.exposure.data(), image.depth.data());
         } else {
             const std::vector<SplatFilm> splats = front().download_splats();
             image = developed(on_host(film_, splats), film_exposure_s());
@@ -195,14 +201,14 @@ private:
     double least_lamp_share() const override {
         return realcam::least_lamp_share(scene_.placed().view(),
                                          setup_->view(scene_.placed().origin_m(), scene_.placed().moves()), *setup_,
-                                         settings().lights_traced());
+                                         settings().effective_light_tracing());
     }
     std::vector<float> develop_traced() override {
         return traced_exposure(front().download_splats(), film_exposure_s());
     }
 
     std::vector<std::int64_t> count_samples() override {
-        if (!fits()) return samples_of(film_);
+        if (!film_fits()) return samples_of(film_);
         std::vector<std::int64_t> counts(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
         front().count_samples(counts.data());
         return counts;
@@ -232,8 +238,10 @@ private:
     DeviceRenderer& front() const { return *renderers_.front(); }
     int width() const { return camera().film.width; }
     int height() const { return camera().film.height; }
-    bool fits() const { return rows_ == height(); }
-    FilmControlVariates balance() const { return film_control_variates(settings()); }
+    /// True if the first GPU holds the whole film.
+    bool film_fits() const { return rows_ == height(); }
+    FilmControlVariates control_variates() const { return film_control_variates(settings()); }
+    /// Returns a film in host memory for its development.
     FilmView on_host(const FilmSums& film, const std::vector<SplatFilm>& splats) const {
         return view_of(film, width(), height(), settings(), splats);
     }
@@ -261,8 +269,8 @@ private:
     template <class F>
     void for_bands(int first_row, int row_count, OwnStop& stop, F&& f) {
         constexpr int kPixels = 1 << 20;
-        const int most = std::max(1, kPixels / width()), end = first_row + row_count;
-        for (int row = first_row; row < end && !stop; row += most) f(row, std::min(most, end - row));
+        const int max_rows = std::max(1, kPixels / width()), end = first_row + row_count;
+        for (int row = first_row; row < end && !stop; row += max_rows) f(row, std::min(max_rows, end - row));
     }
 
     /// Reserves memory and returns the number of rows that fit into the memory of every GPU.
@@ -285,14 +293,15 @@ private:
         const std::int64_t columns = width();
         for (int row = 0; row < height() && !stop; row += rows_) {
             const int rows = std::min(rows_, height() - row);
-            PixelSum* const kept = fits() ? nullptr : film_.data() + row * columns;
-            if (kept) front().upload_film(kept, rows * columns);
+            PixelSum* const band_on_host = film_fits() ? nullptr : film_.data() + row * columns;
+            if (band_on_host) front().upload_film(band_on_host, rows * columns);
             const PixelCounts in_band{counts.counts ? counts.counts + row * columns : nullptr, counts.taken};
             expose_band(row, rows, range, in_band, stop, done);
-            if (kept) front().download_film(kept);
+            if (band_on_host) front().download_film(band_on_host);
         }
     }
 
+    /// Exposes some rows, which the first GPU's film holds; the films of the other GPUs are added to it.
     void expose_band(int first_row, int rows, const SampleRange& range, const PixelCounts& counts, OwnStop& stop,
                      std::atomic<std::int64_t>& done) {
         const auto share = [&](std::size_t i) {
@@ -317,13 +326,14 @@ private:
         for (std::size_t i = 1; i < renderers_.size(); ++i) front().merge_film(*renderers_[i]);
     }
 
-    DevicePicture develop_here() {
-        if (!fits()) throw DeviceError("the film is larger than the GPU's memory");
+    /// Develops the film in the memory of the first GPU.
+    DevicePicture develop_on_gpu() {
+        if (!film_fits()) throw DeviceError("the film is larger than the GPU's memory");
         const CurrentDevice current(front().ordinal());
         const std::int64_t columns = width(), rows = height();
         DeviceArray<float> exposure(static_cast<std::size_t>(3 * columns * rows)),
             depth(static_cast<std::size_t>(columns * rows));
-        front().develop_here(balance(), film_exposure_s(), exposure.data(), depth.data());
+        front().develop_on_gpu(control_variates(), film_exposure_s(), exposure.data(), depth.data());
         int stopped = 0;
         front().stop_flag().download(&stopped, front().stream());
         front().wait();
@@ -339,6 +349,8 @@ private:
         return sum;
     }
 
+    /// Sets the cost of samples from counters. `seconds`: of the wall clock, which the stages share by their clock
+    /// cycles.
     static void set_stats(RenderStats& stats, const RenderCounts& counts, double seconds) {
         stats.seconds = seconds;
         stats.sampled_rays = counts.sampled_rays;

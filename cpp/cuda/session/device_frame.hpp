@@ -12,18 +12,20 @@
 
 namespace realcam {
 
-/// Host memory of a finished frame.
+/// Pinned host memory to which the GPU writes a frame.
 struct FrameMemory {
-    explicit FrameMemory(std::size_t size) : codes(size), stopped(1) {}
+    /// `size`: number of 8-bit values.
+    explicit FrameMemory(std::size_t size) : codes(size), stopped(/*count=*/1) {}
 
-    PinnedArray<std::uint8_t> codes;
-    PinnedArray<int> stopped;  ///< if not 0, the frame was stopped and may lack samples
+    PinnedArray<std::uint8_t> codes;  ///< 8-bit sRGB, 3 per pixel
+    PinnedArray<int> stopped;  ///< one number; if it is not 0, the frame was stopped and may lack samples
 };
 
-/// Pool of pinned frame memory, reused when a frame is released: pinning takes longer than a frame.
+/// Pool of frame memory, which is reused after a frame is released: pinning memory takes longer than rendering a frame.
 class FramePool {
 public:
-    std::shared_ptr<FrameMemory> take(std::size_t size) {
+    /// Returns memory of a size that no frame uses, and frees unused memory of all other sizes.
+    std::shared_ptr<FrameMemory> acquire(std::size_t size) {
         std::erase_if(frames_,
                       [&](const auto& frame) { return frame.use_count() == 1 && frame->codes.size() != size; });
         for (const auto& frame : frames_)
@@ -38,23 +40,25 @@ private:
 /// Live frame rendered on a GPU. Created by make_on_device.
 class DeviceFrame final : public LiveFrame {
 public:
+    /// `samples`: see LiveFrame::samples.
     DeviceFrame(const Film& film, std::int64_t samples, FramePool& pool)
         : width_(film.width),
           height_(film.height),
           samples_(samples),
-          memory_(pool.take(std::size_t{3} * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_))) {}
+          memory_(pool.acquire(std::size_t{3} * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_))) {
+    }
 
     int width() const override { return width_; }
     int height() const override { return height_; }
     std::int64_t samples() const override { return samples_; }
-    bool wait_for(std::chrono::microseconds longest) const override {
+    bool wait_for(std::chrono::microseconds timeout) const override {
         // Spins at first: a frame takes a few milliseconds, and a sleeping thread wakes up late.
-        constexpr auto kAwake = std::chrono::milliseconds(5);
+        constexpr auto kSpinTime = std::chrono::milliseconds(5);
         const auto start = std::chrono::steady_clock::now();
         while (!end_.reached()) {
             const auto waited = std::chrono::steady_clock::now() - start;
-            if (waited >= longest) return false;
-            if (waited < kAwake)
+            if (waited >= timeout) return false;
+            if (waited < kSpinTime)
                 std::this_thread::yield();
             else
                 std::this_thread::sleep_for(std::chrono::microseconds(200));
@@ -67,10 +71,10 @@ public:
         return memory_->codes.data();
     }
 
-    /// Queues the development of the frame behind its exposure in the renderer's stream.
-    void develop(DeviceRenderer& renderer, const FilmControlVariates& balance, double exposure_s, double iso,
+    /// Queues the development of the frame in the renderer's stream, after the launches that take its samples.
+    void develop(DeviceRenderer& renderer, const FilmControlVariates& control_variates, double exposure_s, double iso,
                  ToneCurve curve) {
-        renderer.develop_codes(balance, exposure_s, iso, curve, memory_->codes.data());
+        renderer.develop_codes(control_variates, exposure_s, iso, curve, memory_->codes.data());
         renderer.stop_flag().download(memory_->stopped.data(), renderer.stream());
         end_.record(renderer.stream());
     }
@@ -79,7 +83,7 @@ private:
     int width_, height_;
     std::int64_t samples_;
     std::shared_ptr<FrameMemory> memory_;
-    CudaEvent end_;
+    CudaEvent end_;  ///< after all work of the frame
 };
 
 }  // namespace realcam

@@ -12,11 +12,10 @@
 
 namespace realcam {
 
-/// Source of splatted light (ghosts, starbursts, traced lights), sampled separately from the pixels. The view is the
-/// host's.
+/// Source of splatted light (GhostLight). The arrays of the view are in host memory.
 struct SplatSource {
     GhostView view;
-    double units_per_lux;
+    double units_per_lux;  ///< unit of GhostSum (ghost_units_per_lux)
 };
 
 /// Device copy of one SplatSource with its film, on one GPU. All functions throw DeviceError.
@@ -49,35 +48,36 @@ public:
     void add(const DeviceScene& scene, const CameraView& camera, const StopFlag& stop, const SampleRange& range,
              const PathSettings& settings, CudaStream& stream) {
         if (sums_.size() == 0) return;
-        constexpr std::uint64_t kLaunch = 1 << 14;
+        constexpr std::uint64_t kBlocksPerLaunch = 1 << 14;
         const GhostBlocks blocks = ghost_blocks(camera, range, view_);
         const auto launch = view_.light == GhostLight::of_objects ? launch_gather_ghosts
                             : view_.light == GhostLight::direct   ? launch_trace_lights
                                                                   : launch_splat_ghosts;
-        for (std::uint64_t block = blocks.first; block < blocks.end && !stop.is_raised(); block += kLaunch)
+        for (std::uint64_t block = blocks.first; block < blocks.end && !stop.is_raised(); block += kBlocksPerLaunch)
             launch({scene.view(), scene.bvh(), camera, view_, stop.data(), sums_.data(), films_, blocks_done_.data(),
-                    block, static_cast<std::uint32_t>(std::min(kLaunch, blocks.end - block)), range.seed, settings,
-                    units_per_lux_},
+                    block, static_cast<std::uint32_t>(std::min(kBlocksPerLaunch, blocks.end - block)), range.seed,
+                    settings, units_per_lux_},
                    stream);
     }
 
-    GhostFilmView seen() const {
+    /// Returns a view of the films, in the GPU's memory.
+    GhostFilmView view() const {
         if (sums_.size() == 0) return {};
         return {view_.light, sums_.data(), films_, units_per_lux_, blocks_done_.data(), width_, height_};
     }
 
     /// Copies all films to the host. Synchronous.
     SplatFilm download(const CudaStream& stream) const {
-        SplatFilm here{view_.light,
+        SplatFilm film{view_.light,
                        std::vector<GhostSum>(sums_.size()),
                        std::vector<unsigned long long>(blocks_done_.size()),
                        units_per_lux_,
                        width_,
                        height_};
-        sums_.download(here.sums.data(), stream);
-        blocks_done_.download(here.blocks.data(), stream);
+        sums_.download(film.sums.data(), stream);
+        blocks_done_.download(film.blocks.data(), stream);
         stream.wait("copying ghosts from it");
-        return here;
+        return film;
     }
 
 private:

@@ -11,19 +11,21 @@ namespace {
 
 /// Target duration of a launch: short enough for frequent progress reports, long enough that its overhead is
 /// negligible.
-constexpr double kLaunch_ms = 10;
-/// Samples of the first launches of a picture. Throughput measured with another scene, lens or number of bounces is no
-/// guide.
+constexpr double kLaunchTime_ms = 10;
+/// Number of samples in the first launches of a picture, before its speed is known. That of the last picture may have
+/// been measured with another scene, lens or number of bounces.
 constexpr double kFirstSamples = 1 << 20;
 
 /// Splits a film part into launches: all samples of some rows, or a few samples of all rows.
 class LaunchPlan {
 public:
+    /// `columns`: width of the film.
     LaunchPlan(const FilmPart& part, int columns) : part_(part), columns_(columns), row_(0), sample_(0) {}
 
-    bool over() const { return sample_ == part_.sample_count; }
+    /// True if all samples have been returned by next().
+    bool is_complete() const { return sample_ == part_.sample_count; }
 
-    /// Returns the next launch, of about this many samples.
+    /// Returns the next launch. `samples`: approximate number of its samples over all pixels.
     FilmPart next(double samples) {
         const double row = columns_;
         const int rows_left = part_.row_count - row_;
@@ -114,23 +116,23 @@ void DeviceRenderer::splat(const SampleRange& range, const PathSettings& setting
 
 std::vector<SplatFilm> DeviceRenderer::download_splats() {
     const CurrentDevice current(ordinal_);
-    std::vector<SplatFilm> here;
-    for (const DeviceGhosts& light : splats_) here.push_back(light.download(stream_));
-    return here;
+    std::vector<SplatFilm> films_on_host;
+    for (const DeviceGhosts& light : splats_) films_on_host.push_back(light.download(stream_));
+    return films_on_host;
 }
 
-std::vector<SplatFilm> DeviceRenderer::splats_apart(const std::vector<SplatSource>& sources, int films,
+std::vector<SplatFilm> DeviceRenderer::trace_splats(const std::vector<SplatSource>& sources, int films,
                                                     const SampleRange& range, const PathSettings& settings) {
     const CurrentDevice current(ordinal_);
-    std::vector<SplatFilm> here;
+    std::vector<SplatFilm> films_on_host;
     for (const SplatSource& source : sources) {
         DeviceGhosts light;
         light.set(&source, stream_);
         light.clear(camera_.width, camera_.height, films, stream_);
         light.add(scene_, camera_, stop_, range, settings, stream_);
-        here.push_back(light.download(stream_));
+        films_on_host.push_back(light.download(stream_));
     }
-    return here;
+    return films_on_host;
 }
 
 FilmSums DeviceRenderer::expose_region(const FilmRegion& region, const SampleRange& range,
@@ -139,12 +141,12 @@ FilmSums DeviceRenderer::expose_region(const FilmRegion& region, const SampleRan
     const FilmPart part{region.row, region.height, range.first, range.count};
     const auto columns = static_cast<std::size_t>(camera_.width), pixels = static_cast<std::size_t>(pixels_of(part));
     // Launches cover whole rows; pixels outside the region get no samples.
-    std::vector<std::uint32_t> of_pixels(pixels);
+    std::vector<std::uint32_t> pixel_counts(pixels);
     for (int row = region.row; row < region.row + region.height; ++row)
         for (int column = region.column; column < region.column + region.width; ++column)
-            of_pixels[static_cast<std::size_t>(row - region.row) * columns + static_cast<std::size_t>(column)] =
+            pixel_counts[static_cast<std::size_t>(row - region.row) * columns + static_cast<std::size_t>(column)] =
                 counts.of(region.index(column, row), range);
-    sample_counts_.upload(of_pixels.data(), pixels, stream_);
+    sample_counts_.upload(pixel_counts.data(), pixels, stream_);
     region_sums_.resize(pixels);
     region_sums_.clear(stream_);
     launch(part, settings, region_sums_.data(), {sample_counts_.data(), 0}, film_pixels(),
@@ -162,7 +164,7 @@ FilmSums DeviceRenderer::expose_region(const FilmRegion& region, const SampleRan
 
 SplattedLight DeviceRenderer::splatted() const {
     SplattedLight light;
-    for (std::size_t i = 0; i < splats_.size(); ++i) light.films[i] = splats_[i].seen();
+    for (std::size_t i = 0; i < splats_.size(); ++i) light.films[i] = splats_[i].view();
     return light;
 }
 
@@ -173,10 +175,10 @@ void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
     exposure_.resize(3 * count);
     depth_.resize(count);
     if (merges) others_.resize(count);
-    rehearse();
+    warm_up();
 }
 
-void DeviceRenderer::rehearse() {
+void DeviceRenderer::warm_up() {
     launch({0, 0, 0, 0}, {}, sums_.data(), {}, 0, {}, stop_.data());
     launch_develop({sums_.data(), 0, 0}, 1, exposure_.data(), depth_.data(), stream_);
     launch_merge(sums_.data(), others_.data(), 0, stream_);
@@ -227,15 +229,15 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
         ends[i].wait();
         done += sizes[i];
         const double ms = ends[i].ms_since(ends[(i + 2) % 3]);
-        if (ms > 0) launch_samples = kLaunch_ms / ms * static_cast<double>(sizes[i]);
+        if (ms > 0) launch_samples = kLaunchTime_ms / ms * static_cast<double>(sizes[i]);
     };
-    while (!plan.over() && !stop_.is_raised()) {
+    while (!plan.is_complete() && !stop_.is_raised()) {
         if (started - finished == 2) finish_one();
         const FilmPart piece = plan.next(launch_samples);
         const std::int64_t first = static_cast<std::int64_t>(piece.first_row - part.first_row) * camera_.width;
-        const PixelCounts here{counts.counts ? sample_counts_.data() + first : nullptr,
-                               counts.taken + (piece.first_sample - part.first_sample)};
-        launch(piece, settings, sums_.data() + first, here, pixels_of(piece),
+        const PixelCounts remaining{counts.counts ? sample_counts_.data() + first : nullptr,
+                                    counts.taken + (piece.first_sample - part.first_sample)};
+        launch(piece, settings, sums_.data() + first, remaining, pixels_of(piece),
                sharing_in(rows_of(piece), settings, counts), stop);
         const std::size_t i = started++ % 3;
         ends[i].record(stream_);
@@ -249,16 +251,16 @@ void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings) {
     launch(part, settings, sums_.data(), {}, pixels_of(part), sharing_in(rows_of(part), settings, {}), stop_.data());
 }
 
-FilmView DeviceRenderer::film(const FilmControlVariates& balance) const {
+FilmView DeviceRenderer::film(const FilmControlVariates& control_variates) const {
     const auto rows = static_cast<int>(sums_.size() / static_cast<std::size_t>(camera_.width));
-    return {sums_.data(), camera_.width, rows, balance, splatted()};
+    return {sums_.data(), camera_.width, rows, control_variates, splatted()};
 }
 
-void DeviceRenderer::develop_codes(const FilmControlVariates& balance, double exposure_time_s, double iso,
+void DeviceRenderer::develop_codes(const FilmControlVariates& control_variates, double exposure_time_s, double iso,
                                    ToneCurve curve, std::uint8_t* codes) {
     const CurrentDevice current(ordinal_);
     codes_.resize(3 * sums_.size());
-    launch_develop_codes(film(balance), exposure_time_s, iso, curve, codes_.data(), stream_);
+    launch_develop_codes(film(control_variates), exposure_time_s, iso, curve, codes_.data(), stream_);
     codes_.download(codes, stream_);
 }
 
@@ -284,18 +286,18 @@ void DeviceRenderer::download_film(PixelSum* to) {
     stream_.wait("copying the film from it");
 }
 
-void DeviceRenderer::develop_here(const FilmControlVariates& balance, double exposure_time_s, float* exposure,
-                                  float* depth) {
+void DeviceRenderer::develop_on_gpu(const FilmControlVariates& control_variates, double exposure_time_s,
+                                    float* exposure, float* depth) {
     const CurrentDevice current(ordinal_);
-    launch_develop(film(balance), exposure_time_s, exposure, depth, stream_);
+    launch_develop(film(control_variates), exposure_time_s, exposure, depth, stream_);
 }
 
-void DeviceRenderer::develop(const FilmControlVariates& balance, double exposure_time_s, float* exposure,
+void DeviceRenderer::develop(const FilmControlVariates& control_variates, double exposure_time_s, float* exposure,
                              float* depth) {
     const CurrentDevice current(ordinal_);
     exposure_.resize(3 * sums_.size());
     depth_.resize(sums_.size());
-    develop_here(balance, exposure_time_s, exposure_.data(), depth_.data());
+    develop_on_gpu(control_variates, exposure_time_s, exposure_.data(), depth_.data());
     exposure_.download(exposure, stream_);
     depth_.download(depth, stream_);
     stream_.wait("copying the picture from it");
@@ -303,9 +305,9 @@ void DeviceRenderer::develop(const FilmControlVariates& balance, double exposure
 
 void DeviceRenderer::count_samples(std::int64_t* counts) {
     const CurrentDevice current(ordinal_);
-    DeviceArray<std::int64_t> here(sums_.size());
-    launch_count(sums_.data(), static_cast<std::int64_t>(sums_.size()), here.data(), stream_);
-    here.download(counts, stream_);
+    DeviceArray<std::int64_t> counts_on_device(sums_.size());
+    launch_count(sums_.data(), static_cast<std::int64_t>(sums_.size()), counts_on_device.data(), stream_);
+    counts_on_device.download(counts, stream_);
     stream_.wait("counting samples");
 }
 
@@ -314,20 +316,20 @@ LayerJob DeviceRenderer::layer_job(const FilmPart& part, std::uint32_t seed) con
             part.first_sample, part.sample_count, part.first_row, part.row_count};
 }
 
-void DeviceRenderer::see_layers(const FilmPart& part, std::uint32_t seed, LayerSum* sums,
-                                std::atomic<std::int64_t>& done) {
+void DeviceRenderer::trace_layers(const FilmPart& part, std::uint32_t seed, LayerSum* sums,
+                                  std::atomic<std::int64_t>& done) {
     const CurrentDevice current(ordinal_);
     const std::int64_t pixels = static_cast<std::int64_t>(part.row_count) * camera_.width;
     // About ten milliseconds per launch.
     constexpr std::int64_t kLaunchSamples = 1 << 24;
-    const auto most = static_cast<std::uint32_t>(std::max<std::int64_t>(1, kLaunchSamples / pixels));
+    const auto max_samples = static_cast<std::uint32_t>(std::max<std::int64_t>(1, kLaunchSamples / pixels));
     layer_sums_.resize(static_cast<std::size_t>(pixels));
     layer_sums_.clear(stream_);
     LayerJob job = layer_job(part, seed);
     for (std::uint32_t taken = 0; taken < part.sample_count && !stop_.is_raised(); taken += job.sample_count) {
         job.first_sample = part.first_sample + taken;
-        job.sample_count = std::min(most, part.sample_count - taken);
-        launch_see_layers(job, layer_sums_.data(), stream_);
+        job.sample_count = std::min(max_samples, part.sample_count - taken);
+        launch_trace_layers(job, layer_sums_.data(), stream_);
         stream_.wait("tracing layers");
         done += job.sample_count * pixels;
     }
@@ -335,11 +337,11 @@ void DeviceRenderer::see_layers(const FilmPart& part, std::uint32_t seed, LayerS
     stream_.wait("copying layers from it");
 }
 
-void DeviceRenderer::see_pixel_centre_surfaces(const FilmPart& part, PixelCentreSurface* surfaces) {
+void DeviceRenderer::trace_pixel_centres(const FilmPart& part, PixelCentreSurface* surfaces) {
     const CurrentDevice current(ordinal_);
     pixel_centre_surfaces_.resize(static_cast<std::size_t>(part.row_count) * static_cast<std::size_t>(camera_.width));
     pixel_centre_surfaces_.clear(stream_);
-    launch_see_pixel_centre_surfaces(layer_job(part, 0), pixel_centre_surfaces_.data(), stream_);
+    launch_trace_pixel_centres(layer_job(part, 0), pixel_centre_surfaces_.data(), stream_);
     pixel_centre_surfaces_.download(surfaces, stream_);
     stream_.wait("copying layers from it");
 }

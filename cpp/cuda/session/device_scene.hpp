@@ -12,6 +12,7 @@ namespace realcam {
 /// throw DeviceError.
 class DeviceScene {
 public:
+    /// Copies a scene and its BVHs to the current device. Synchronous.
     void set(const RenderSpaceScene& scene, const SceneBvh& bvh, CudaStream& stream);
     /// Updates only the data that depend on instance transforms.
     void set_instances(const RenderSpaceScene& scene, const SceneBvh& bvh, CudaStream& stream);
@@ -23,7 +24,7 @@ private:
     DeviceArrays arrays_, instance_arrays_;
     SceneView view_{};
     SceneBvhView bvh_{};
-    std::vector<WideBvhView> objects_;
+    std::vector<WideBvhView> objects_;  ///< BVHs of the objects, in the GPU's memory
 };
 
 }  // namespace realcam

@@ -8,16 +8,21 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Control variates for noise of a pixel that does not come from the scene. By chance, more samples of a pixel pass the
-// lens than of its neighbour. A sample with a wavelength has a weight above one in some channels of the film and below
-// one in others, and samples of neighbouring pixels count, too (dispersed_rays.hpp), so that a pixel has more of one
-// colour than its neighbour even in a uniformly white picture. Both are known without the scene. PixelSum::passed
-// counts the samples that pass. The additional sums of PixelSum hold the excess: the sum that the samples would bring
-// if everything they see were white, less the number of those that pass. The mean over the surrounding pixels is the
-// effect of the lens. The deviation of a pixel from that mean is chance, and is removed from its light when the film is
-// developed.
+// Control variates that remove the noise of the camera's own sampling from a film when it is developed. There are two:
+//
+// - Pass rate: by chance, a larger fraction of a pixel's samples passes the lens than of its neighbour's.
+// PixelSum::passed
+//   counts the samples that pass.
+// - Wavelengths: a sample at one wavelength has a weight above one in some channels of the film and below one in
+// others,
+//   and samples of neighbouring pixels count, too (dispersed_rays.hpp). Even in a uniformly white scene a pixel
+//   therefore has more of one colour than its neighbour. PixelSum::auxiliary holds the excess: the sum over all
+//   contributions to the pixel if the scene were white, less the number of samples that pass.
+//
+// Both are known without the scene. Their mean over the surrounding pixels is the effect of the lens; the deviation of
+// a pixel from that mean is chance.
 
-/// Selects the control variates.
+/// Selects the control variates of a picture.
 struct FilmControlVariates {
     bool passes = false;  ///< for the number of samples that pass
     bool wavelengths = false;  ///< for their weights in each channel
@@ -25,37 +30,37 @@ struct FilmControlVariates {
     REALCAM_HD bool any() const { return passes || wavelengths; }
 };
 
-/// True if pixels accumulate the excess: samples have wavelengths, and no layer needs the additional sums of PixelSum.
+/// Returns true if pixels accumulate the excess: samples have wavelengths, and no layer needs PixelSum::auxiliary.
 inline bool balances_wavelengths(const RenderSettings& settings) {
     return settings.effects.have_wavelengths() && !settings.layers.has(Layer::variance) &&
            !settings.layers.has_any(kHalfLayers);
 }
 
-/// If pixels learn their pupils, their pass rates differ, because each samples other pupil points; `passes` is then
-/// off.
+/// Returns the control variates for these settings. If pixels learn their pupils, `passes` is off: their pass rates
+/// differ, because each pixel samples other pupil points.
 inline FilmControlVariates film_control_variates(const RenderSettings& settings) {
     return {settings.pupil_sampling != PupilSampling::pixel, balances_wavelengths(settings)};
 }
 
-/// Sums over neighbouring pixels of a film, of those that have samples.
+/// Sums over the pixels of a neighbourhood that have samples.
 struct PixelNeighbourhood {
     static constexpr int kReach = 2;  ///< radius of the neighbourhood, pixels
     static constexpr double kEvenSamples = 32;  ///< per pixel; with more, stratification makes the pass rates more even
 
-    double pixels = 0;
+    double pixels = 0;  ///< number of pixels
     double share = 0, share_squared = 0;  ///< pass rate: fraction of a pixel's samples that pass the lens
-    double chance = 0;  ///< variance of the pass rate, over that of a single sample
+    double chance = 0;  ///< expected variance of a pixel's pass rate, over that of a single sample
     double excess[3] = {0, 0, 0};  ///< per sample, by channel
     /// Irradiance of a channel, and the sums of excess and of its square, weighted with that irradiance.
     double light[3] = {0, 0, 0}, lit_excess[3] = {0, 0, 0}, lit_square[3] = {0, 0, 0};
 
-    /// Radius of the neighbourhood of row or column `from` of `count`: the same to both sides, so that the mean of a
-    /// quantity that changes linearly over the film is its value in the centre.
+    /// Returns the radius of the neighbourhood of row or column `from` of `count`: the same to both sides, so that the
+    /// mean of a quantity that changes linearly over the film is its value in the centre.
     REALCAM_HD static int reach(int from, int count) {
-        constexpr int kMost = kReach;  // a value: device code has no address of the member
+        constexpr int kMost = kReach;  // a copy: std::min would need the member's address in device code
         return std::min({kMost, from, count - 1 - from});
     }
-    /// Neighbourhood in one column of a film that is stored row by row.
+    /// Returns the sums over the part of a pixel's neighbourhood in one column, for a film that is stored row by row.
     REALCAM_HD static PixelNeighbourhood of_column(const PixelSum* film, int width, int height, int column, int row,
                                                    bool has_wavelengths) {
         PixelNeighbourhood sum;
@@ -64,7 +69,7 @@ struct PixelNeighbourhood {
             sum.add(film[static_cast<std::int64_t>(y) * width + column], has_wavelengths);
         return sum;
     }
-    /// Neighbourhood of a pixel. `of_column(column)`: sums of one column.
+    /// Returns the sums over the neighbourhood of a pixel. `of_column(column)`: returns those of one column.
     template <class OfColumn>
     REALCAM_HD static PixelNeighbourhood around(int column, int width, OfColumn&& of_column) {
         PixelNeighbourhood sum;
@@ -102,7 +107,7 @@ struct PixelNeighbourhood {
         }
         return *this;
     }
-    /// Mean pass rate, its variance between the pixels, and the variance that chance explains.
+    // Mean pass rate, its variance between the pixels, and the variance that is expected by chance.
     REALCAM_HD double mean_share() const { return share / pixels; }
     REALCAM_HD double share_variance() const { return share_squared / pixels - mean_share() * mean_share(); }
     REALCAM_HD double mean_chance() const { return mean_share() * (1 - mean_share()) * chance / pixels; }
@@ -113,26 +118,26 @@ struct PixelNeighbourhood {
         return std::clamp(pixel.auxiliary[channel] / static_cast<double>(pixel.samples), -kMost, kMost);
     }
     REALCAM_HD double mean_excess(int channel) const { return excess[channel] / pixels; }
-    /// Mean of d (1 - d), where d is the excess over the mean, weighted with the light of a channel, which may be
-    /// negative in single pixels.
+    /// Mean over the pixels of d (1 - d), where d is a pixel's excess less the mean excess, weighted with the
+    /// irradiance of a channel. That may be negative in single pixels.
     REALCAM_HD double lit_chance(int channel) const {
         const double mean = mean_excess(channel), e = lit_excess[channel] / light[channel],
                      square = lit_square[channel] / light[channel];
         return std::clamp(e - mean - (square - 2 * mean * e + mean * mean), -1.0, 1.0);
     }
-    /// True if a channel has so much of the light that its weights are positive and their sum is significant.
+    /// Returns true if a channel has enough of the irradiance to be used as weights: their sum must be significant.
     REALCAM_HD bool is_lit(int channel) const {
         constexpr double kLeastShare = 0.2;
         return light[channel] > kLeastShare * std::max({light[0], light[1], light[2]}) && light[channel] > 0;
     }
 };
 
-/// Factor that scales a pixel's light to the pass rate of its neighbours. The mean of the passing samples is itself
-/// unbiased.
+/// Returns the factor that scales a pixel's irradiance to the pass rate of its neighbours. The result is unbiased,
+/// because the mean over the passing samples is.
 ///
-/// A pupil's outline has a margin, in which one or two in a hundred samples are lost (Pupil). If more are lost, the
-/// image circle ends there. If the pass rates of the pixels differ by more than chance explains, they have other
-/// reasons, too. In both cases the mean does not predict the rate of the centre pixel, and the factor is 1.
+/// Samples are taken in a pupil outline with a margin, in which one or two in a hundred are lost (Pupil). If more are
+/// lost, the image circle ends there; if the pass rates of the pixels differ by more than chance explains, they have
+/// other causes, too. In both cases the mean does not predict the rate of the centre pixel, and the factor is 1.
 REALCAM_HD inline double pass_balance(const PixelSum& pixel, const PixelNeighbourhood& around) {
     constexpr std::uint64_t kFewestSamples = 8;  // the pass rate of fewer is too uncertain
     constexpr double kLeastShare = 0.96, kMostVariance = 1.75;
@@ -142,14 +147,14 @@ REALCAM_HD inline double pass_balance(const PixelSum& pixel, const PixelNeighbou
     return share * static_cast<double>(pixel.samples) / static_cast<double>(pixel.passed);
 }
 
-/// Factor that scales a pixel's light in a channel to the weights of its neighbours: a control variate whose
-/// coefficient is the light itself (Owen, Monte Carlo theory, methods and examples, 2013, section 8.9).
+/// Returns the factor that scales a pixel's irradiance in a channel to the weights of its neighbours: a control variate
+/// whose coefficient is the irradiance itself (Owen, Monte Carlo theory, methods and examples, 2013, section 8.9).
 ///
-/// With d, the excess by chance, the light of a uniformly white scene is 1 + d, and 1 - d (1 - d) is near 1 / (1 + d).
-/// The correction is scaled by n / (n + kFew) for n samples. Light and d come from the same samples, so that their
-/// product has a mean of its own, which depends on the light's colour. It is estimated by the mean over the surrounding
-/// pixels, weighted with their light, and subtracted, so that the sum over uniform light is unchanged, whatever its
-/// colour and the number of samples are.
+/// Let d be the pixel's excess less the mean excess. A uniformly white scene has the irradiance 1 + d, and 1 - d (1 -
+/// d) is near 1 / (1 + d). The correction is scaled by n / (n + kFew) for n samples. Light and d come from the same
+/// samples, so that their product has a mean of its own, which depends on the light's colour. It is estimated by the
+/// mean over the surrounding pixels, weighted with their light, and subtracted, so that the sum over uniform light is
+/// unchanged, whatever its colour and the number of samples are.
 REALCAM_HD inline double wavelength_balance(const PixelSum& pixel, int channel, const PixelNeighbourhood& around) {
     constexpr double kFew = 1;
     if (!around.is_lit(channel)) return 1;
@@ -162,9 +167,9 @@ REALCAM_HD inline double wavelength_balance(const PixelSum& pixel, int channel, 
 
 namespace realcam {
 
-/// True if samples also count for wavelengths in other pixels than their own (SampleSharing). All pixels must then draw
-/// the same rays equally often, and the contributions of others must be balanced: no layer may need the variance of a
-/// pixel's own samples, or those of half the pupil.
+/// Returns true if samples also contribute to other pixels than their own, at other wavelengths (SampleSharing). This
+/// requires that all pixels take equally many samples and that the excess is accumulated: no layer may need the
+/// variance of a pixel's own samples, or those of half the pupil.
 inline bool shares_samples(const CameraView& camera, const RenderSettings& settings, const PixelCounts& counts) {
     return camera.effects.share_pixels() && !counts.counts && !camera.pixel_pupils.known && camera.row_time == 0.0f &&
            balances_wavelengths(settings);

@@ -12,7 +12,8 @@ std::size_t pixels_of(const FilmView& film) {
     return static_cast<std::size_t>(film.pixel_count());
 }
 
-/// Calls visit(pixel, neighbourhood) for a range of pixels of a film.
+/// Calls visit(pixel index, PixelNeighbourhood) for the pixels [first, last) of a film. The sums of each column of a
+/// row's neighbourhoods are computed once.
 template <class Visit>
 void for_neighbourhoods(const FilmView& film, std::size_t first, std::size_t last, Visit&& visit) {
     constexpr int kReach = PixelNeighbourhood::kReach;
@@ -33,25 +34,26 @@ void for_neighbourhoods(const FilmView& film, std::size_t first, std::size_t las
     }
 }
 
-/// Calls take(pixel, channel, irradiance of the splatted light, balance) for each channel of each pixel of a film.
-template <class Take>
-void for_channels(const FilmView& film, const RayLoop& loop, Take&& take) {
-    const auto visit = [&](std::size_t i, const PixelNeighbourhood& around) {
+/// Calls visit(pixel index, channel, splatted irradiance in lux, factor of the control variates) for each channel of
+/// each pixel of a film.
+template <class Visit>
+void for_channels(const FilmView& film, const RayLoop& loop, Visit&& visit) {
+    const auto visit_pixel = [&](std::size_t i, const PixelNeighbourhood& around) {
         film.for_channels(static_cast<std::int64_t>(i), around,
-                          [&](int channel, double ghosts, double balance) { take(i, channel, ghosts, balance); });
+                          [&](int channel, double splatted, double factor) { visit(i, channel, splatted, factor); });
     };
     loop.run(0, pixels_of(film), [&](std::size_t first, std::size_t last) {
-        if (film.balance.any()) return for_neighbourhoods(film, first, last, visit);
-        for (std::size_t i = first; i < last; ++i) visit(i, {});
+        if (film.control_variates.any()) return for_neighbourhoods(film, first, last, visit_pixel);
+        for (std::size_t i = first; i < last; ++i) visit_pixel(i, {});
     });
 }
 
-/// Calls take(index, exposure) for each channel of each pixel, with its index in the picture's array.
-template <class Take>
-void for_exposures(const FilmView& film, double exposure_time_s, const RayLoop& loop, Take&& take) {
-    for_channels(film, loop, [&](std::size_t i, int channel, double ghosts, double balance) {
-        take(3 * i + static_cast<std::size_t>(channel),
-             film.pixels[i].exposure(channel, exposure_time_s, ghosts, balance));
+/// Calls visit(index in the array of exposures, exposure in lux seconds) for each channel of each pixel.
+template <class Visit>
+void for_exposures(const FilmView& film, double exposure_time_s, const RayLoop& loop, Visit&& visit) {
+    for_channels(film, loop, [&](std::size_t i, int channel, double splatted, double factor) {
+        visit(3 * i + static_cast<std::size_t>(channel),
+              film.pixels[i].exposure(channel, exposure_time_s, splatted, factor));
     });
 }
 
@@ -100,25 +102,26 @@ LayerImage developed_traced(const FilmView& film, double exposure_time_s) {
 
 namespace {
 
+/// Develops the layer of one dual-pixel half. `half`: one of kHalfLayers.
 LayerImage developed_half(const FilmView& film, Layer half, double exposure_time_s) {
     LayerImage image{half, std::vector<float>(3 * pixels_of(film)), {}};
-    for_channels(film, {}, [&](std::size_t i, int channel, double ghosts, double balance) {
+    for_channels(film, {}, [&](std::size_t i, int channel, double splatted, double factor) {
         const PixelSum& sum = film.pixels[i];
-        const float right = sum.right_exposure(channel, exposure_time_s, ghosts, balance);
+        const float right = sum.right_exposure(channel, exposure_time_s, splatted, factor);
         image.values[3 * i + static_cast<std::size_t>(channel)] =
-            half == Layer::dual_pixel_right ? right : sum.exposure(channel, exposure_time_s, ghosts, balance) - right;
+            half == Layer::dual_pixel_right ? right : sum.exposure(channel, exposure_time_s, splatted, factor) - right;
     });
     return image;
 }
 
 }  // namespace
 
-std::vector<LayerImage> developed_auxiliary_layers(const FilmView& film, LayerSet wanted, double exposure_time_s) {
+std::vector<LayerImage> developed_auxiliary_layers(const FilmView& film, LayerSet requested, double exposure_time_s) {
     std::vector<LayerImage> images;
-    if (wanted.has(Layer::variance)) images.push_back(developed_variance(film, exposure_time_s));
-    if (wanted.has(Layer::traced_light)) images.push_back(developed_traced(film, exposure_time_s));
+    if (requested.has(Layer::variance)) images.push_back(developed_variance(film, exposure_time_s));
+    if (requested.has(Layer::traced_light)) images.push_back(developed_traced(film, exposure_time_s));
     for (const Layer half : {Layer::dual_pixel_left, Layer::dual_pixel_right})
-        if (wanted.has(half)) images.push_back(developed_half(film, half, exposure_time_s));
+        if (requested.has(half)) images.push_back(developed_half(film, half, exposure_time_s));
     return images;
 }
 

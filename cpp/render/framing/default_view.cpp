@@ -14,23 +14,26 @@ namespace realcam {
 
 namespace {
 
-/// Distance from the entrance pupil to the film along the axis.
-double film_to_pupil_m(const LensSystem& lens) {
+/// Returns the distance from the entrance pupil to the film along the axis, m. An entrance pupil at infinity is
+/// replaced by the front vertex.
+double pupil_to_film_m(const LensSystem& lens) {
     const double pupil = nominal_first_order(lens).entrance_pupil_position;
     return (lens.film_position() - (std::isfinite(pupil) ? pupil : 0.0)) / 1000;
 }
 
+/// Returns the extent of a box along a unit vector that is nearly parallel to one of its axes.
 double extent(const BoundingBox& box, Vec3d direction) {
     const Vec3d size = box.size();
     return std::fabs(direction.x) * size.x + std::fabs(direction.y) * size.y + std::fabs(direction.z) * size.z;
 }
 
-/// Distance from the entrance pupil to `target` at which the boxes of all parts lie in the picture or, for an open
-/// room, at which its open side fills the picture. The field is limited to 90 degrees: to fill the picture of a
-/// fisheye, the camera would have to stand inside the scene. No corner lies in the lens.
+/// Returns the distance from the entrance pupil to `target`, m, at which the boxes of all parts fill nine tenths of the
+/// picture or, for an open room, at which its open side fills the picture. The pose gives the direction. The field of
+/// view is taken as at most 90 degrees: to fill the picture of a fisheye, the camera would have to stand inside the
+/// scene. All corners of the boxes lie in front of the lens.
 double filling_distance(const Subject& subject, const Camera& camera, Vec3d target, bool is_open_room) {
-    constexpr double kFilledShare = 0.9;
-    // The axis points at the target: if the film is shifted, its narrower side decides.
+    constexpr double kFilledFraction = 0.9;
+    // Tangent of half the field of view. The axis points at the target: on a shifted film, the narrower side decides.
     const auto tangent = [&](double side_mm, double shift_mm) {
         const double half_mm = std::max(0.5 * side_mm - std::fabs(shift_mm), 0.1 * side_mm);
         const double angle = widest_field_angle(camera.lens, half_mm);
@@ -39,7 +42,8 @@ double filling_distance(const Subject& subject, const Camera& camera, Vec3d targ
     const Film& film = camera.film;
     const double tan_x = tangent(film.width_mm, film.shift_mm.x), tan_y = tangent(film.height_mm, film.shift_mm.y);
     const auto axes = camera_detail::axes_of(camera.pose);
-    // This also keeps a scene without breadth, such as a plane seen edge on, in front of the camera.
+    // Least distance of a corner: also for a scene without breadth, such as a plane seen edge-on. The entrance pupil
+    // lies `pupil` mm behind the front vertex, which gets a margin of 20%.
     const double pupil = nominal_first_order(camera.lens).entrance_pupil_position;
     const double least = std::max(0.1 * subject.box.diagonal(), std::isfinite(pupil) ? 0.0012 * pupil : 0.0);
     double distance = 0;
@@ -49,14 +53,14 @@ double filling_distance(const Subject& subject, const Camera& camera, Vec3d targ
             const double by_width = std::fabs(dot(p, axes.right)) / tan_x,
                          by_height = std::fabs(dot(p, axes.up)) / tan_y;
             const double required =
-                is_open_room ? std::min(by_width, by_height) : std::max(by_width, by_height) / kFilledShare;
+                is_open_room ? std::min(by_width, by_height) : std::max(by_width, by_height) / kFilledFraction;
             distance = std::max(distance, dot(p, axes.backward) + std::max(required, least));
         }
     return distance;
 }
 
-/// The scene's camera whose view is used; null: choose a view. Throws InputError if the scene has no camera of the
-/// requested name.
+/// Returns the camera of the scene whose view is used, or null if a view is to be chosen. Throws InputError if the
+/// scene has no camera of the requested name, if that camera is orthographic, or if a position is requested, too.
 const SceneCamera* chosen_camera(const Assembly& assembly, const ViewRequest& request) {
     const bool is_placed = request.position_m || request.look_at_m;
     if (request.camera.empty()) {
@@ -77,16 +81,16 @@ const SceneCamera* chosen_camera(const Assembly& assembly, const ViewRequest& re
                      (names.empty() ? "it has none" : "it has " + names));
 }
 
-/// Pose with the entrance pupil of the lens at the position of a scene's camera.
+/// Returns the pose that puts the entrance pupil of a lens at the position of a scene's camera.
 Pose pose_of(const Affine<double>& scene_from_camera, const LensSystem& lens) {
     const Vec3d backward = normalized(scene_from_camera.z);
-    const Vec3d position = scene_from_camera.origin + film_to_pupil_m(lens) * backward;
+    const Vec3d position = scene_from_camera.origin + pupil_to_film_m(lens) * backward;
     return {position, position - backward, normalized(scene_from_camera.y)};
 }
 
-/// Places a camera whose pose depends on its lens, and focuses it: at the requested distance, or else on the first
-/// surface on the axis beyond the lens or, if there is none, on the plane through the centre of the subject. Throws
-/// InputError if the lens cannot focus there.
+/// Places and focuses a camera whose pose depends on its lens: `pose_of_lens(lens)` returns the pose. Focuses at
+/// `focus_distance_m` (from the film) or, without it, on the first surface on the axis beyond the lens or, if there is
+/// none, on the plane through the centre of the subject. Throws InputError if the lens cannot focus there.
 template <class PoseOfLens>
 void pose_and_focus(Camera& camera, const Assembly& assembly, const Subject& subject,
                     std::optional<double> focus_distance_m, PoseOfLens&& pose_of_lens) {
@@ -108,7 +112,7 @@ void pose_and_focus(Camera& camera, const Assembly& assembly, const Subject& sub
     }
 }
 
-/// Chooses a view of the subject.
+/// Chooses a view of the subject by the rules in default_view.hpp, and sets pose and focus of the camera.
 void choose_view(Camera& camera, const Assembly& assembly, const Subject& subject, const ViewRequest& request) {
     const BoundingBox& box = subject.box;
     Vec3d front = std::fabs(request.up.z) > 0.99 * length(request.up) ? Vec3d{0, -1, 0} : Vec3d{0, 0, 1};
@@ -127,9 +131,10 @@ void choose_view(Camera& camera, const Assembly& assembly, const Subject& subjec
     const bool shows_content = is_closed && !subject.content.empty();
     const Vec3d target = request.look_at_m.value_or((shows_content ? subject.content : box).middle());
     Vec3d backward = front;
-    double limit = kInfinity, longest = 0;
+    double limit = kInfinity, longest = 0;  // largest distance of the camera from the target, m; longest view in a room
     if (is_closed) {
-        constexpr double kAside = 0.42, kAbove = 0.1;  // fractions of the room's extent, from its centre
+        // Camera positions near the corners, as fractions of the room's extent from its centre.
+        constexpr double kAside = 0.42, kAbove = 0.1;
         for (const double forth : {1, -1})
             for (const double sideways : {1, -1}) {
                 const Vec3d view = box.middle() + kAside * (forth * depth * front + sideways * width * aside) +
@@ -142,16 +147,18 @@ void choose_view(Camera& camera, const Assembly& assembly, const Subject& subjec
             }
     } else {
         if (!is_open) {
-            // A wall beside the subject would be in between.
+            // The camera moves to the right (1) or the left (-1), but not to a side where a wall would hide the
+            // subject.
             const double side = !subject.has_wall(aside) ? 1 : subject.has_wall(-aside) ? 0 : -1;
             const double azimuth = side * 0.5 * std::atan2(depth, width), elevation = 0.5 * std::atan2(depth, height);
             backward = std::cos(elevation) * (std::cos(azimuth) * front + std::sin(azimuth) * aside) +
                        std::sin(elevation) * up;
         }
-        // No surface lies between the camera and the nearest corner of the subject.
-        double edge = 0;
-        for (int corner = 0; corner < 8; ++corner) edge = std::max(edge, dot(box.corner(corner) - target, backward));
-        limit = 0.99 * first_hit(assembly, target, backward, edge + 1e-6 * box.diagonal());
+        // The camera stays in front of the first surface behind it, so that nothing hides the subject.
+        double subject_edge = 0;
+        for (int corner = 0; corner < 8; ++corner)
+            subject_edge = std::max(subject_edge, dot(box.corner(corner) - target, backward));
+        limit = 0.99 * first_hit(assembly, target, backward, subject_edge + 1e-6 * box.diagonal());
     }
     camera.pose = {target + backward, target, request.up};
     validate(camera);
@@ -160,16 +167,17 @@ void choose_view(Camera& camera, const Assembly& assembly, const Subject& subjec
     const auto pose_of_lens = [&](const LensSystem& lens) {
         camera.lens = lens;
         distance = std::max(least, std::min(limit, filling_distance(subject, camera, target, is_open)));
-        return Pose{target + (distance + film_to_pupil_m(lens)) * backward, target, request.up};
+        return Pose{target + (distance + pupil_to_film_m(lens)) * backward, target, request.up};
     };
     for (int i = 0;; ++i) {
         try {
             pose_and_focus(camera, assembly, subject, request.focus_distance_m, pose_of_lens);
             return;
         } catch (const InputError&) {
-            if (request.focus_distance_m || i == 99) throw;
+            constexpr int kMaxSteps = 99;
+            if (request.focus_distance_m || i == kMaxSteps) throw;
             least = 1.2 * distance;
-            limit = kInfinity;  // the lens does not fit into the room, which is then seen from outside
+            limit = kInfinity;  // the lens cannot focus within the room, which is then viewed from outside
             camera = unplaced;
         }
     }
@@ -197,8 +205,8 @@ const SceneCamera* set_view(Camera& camera, const Assembly& assembly, const View
             pose_and_focus(camera, still, subject, request.focus_distance_m,
                            [&](const LensSystem& lens) { return pose_of(transform, lens); });
         } catch (const InputError& error) {
-            throw InputError(std::string(error.what()) + " (in the place of the scene's camera \"" + from->name +
-                             "\"; camera \"none\" takes another)");
+            throw InputError(std::string(error.what()) + " (at the position of the scene's camera \"" + from->name +
+                             "\"; use camera \"none\" for a view that is chosen)");
         }
         std::vector<PoseKey> keys;
         for (std::size_t k = 0; from->motion && k < from->motion->times_s.size(); ++k)

@@ -14,7 +14,8 @@ namespace REALCAM_NAMESPACE {
 /// sunny-16 rule holds.
 void add_daylight(Scene& scene, const Pose& pose);
 
-/// The user's specification of the camera's position. Missing values are chosen.
+/// The user's specification of the camera's position and focus, in the scene frame. Missing values are chosen
+/// (set_view).
 struct ViewRequest {
     std::optional<Vec3d> position_m, look_at_m;
     Vec3d up = {0, 1, 0};
@@ -26,9 +27,9 @@ struct ViewRequest {
     static constexpr const char* kNoCamera = "none";
 };
 
-/// Sets camera.pose and focuses camera.lens, for the scene when the shutter opens. Values in the request are used as
-/// they are. Otherwise, if the scene has a camera, its position, direction and motion are used. Otherwise the view is
-/// chosen by these rules, which docs/scenes.md states for users:
+/// Sets camera.pose and camera.motion and focuses camera.lens, for the scene at the time when the shutter opens. Values
+/// in the request have precedence. Without them, if the scene has a camera, its position, direction and motion are
+/// used. In a scene without camera, the view is chosen by these rules, which docs/scenes.md states for users:
 /// - subject: the scene without its surroundings (Subject).
 /// - front: +z (-y if up is z), or the first of the right, the left and the back side if the front is a wall that is
 ///   seen from inside.
@@ -39,8 +40,8 @@ struct ViewRequest {
 /// - a closed room is seen from the corner, near half of its height, with the longest view towards its content.
 /// - focus: the first surface on the camera's axis, or the depth of the subject's centre if the axis hits nothing. A
 ///   camera whose position was chosen steps back if its lens cannot focus that near.
-/// Returns the scene's camera whose view was taken, or null. Throws InputError if the lens cannot focus as requested,
-/// if the scene has no triangles, or if it does not have the requested camera.
+/// Returns the scene's camera whose view is used, or null. Throws InputError if the lens cannot focus as requested, if
+/// the scene has no triangles, or if it does not have the requested camera.
 const SceneCamera* set_view(Camera& camera, const Assembly& assembly, const ViewRequest& request);
 
 }  // namespace REALCAM_NAMESPACE

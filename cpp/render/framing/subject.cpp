@@ -10,6 +10,7 @@
 namespace realcam {
 namespace {
 
+/// Returns x, y and z of a vector as an array, for loops over the axes.
 std::array<double, 3> coordinates(Vec3d v) {
     return {v.x, v.y, v.z};
 }
@@ -31,22 +32,25 @@ struct Components {
         count = indices.size();
     }
 
-    std::vector<std::size_t> of_triangle;
-    std::size_t count;
+    std::vector<std::size_t> of_triangle;  ///< index of the component of each triangle
+    std::size_t count;  ///< number of components
 };
 
 /// A triangle, or an instance, which is represented by its bounding box.
 struct Facet {
     BoundingBox box;
-    Vec3d area_m2 = {0, 0, 0};  ///< area vector along the normal
+    Vec3d area_m2 = {0, 0, 0};  ///< geometric normal times the area; 0 for an instance
     bool emits = false;
 };
 
+/// Triangles of a scene, including those of its instances unless there are too many to test each (asks_every_triangle).
+/// In that case an instance is a single facet.
 class Facets {
 public:
     explicit Facets(const Assembly& assembly) : assembly_(assembly) {}
 
-    /// Calls visit(index of the part, facet).
+    /// Calls visit(part index, facet) for each facet. Parts are the connected components of the static geometry and of
+    /// each instance, or whole instances.
     template <class Visit>
     void for_each(Visit&& visit) {
         std::size_t first = for_triangles(*assembly_.static_geometry, {}, 0, visit);
@@ -61,6 +65,8 @@ public:
     }
 
 private:
+    /// Visits the triangles of one scene, transformed by `map`. `first`: index of its first part. Returns the index
+    /// after its last part.
     template <class Visit>
     std::size_t for_triangles(const Scene& scene, const Affine<double>& map, std::size_t first, Visit& visit) {
         const Components& components = components_.try_emplace(&scene, scene).first->second;
@@ -83,22 +89,25 @@ private:
 
 /// A connected component, or an instance, which is represented by its bounding box.
 struct Part {
-    static constexpr double kFlat = 0.05;  // thickness over length
+    static constexpr double kFlat = 0.05;  ///< largest thickness of a flat part, over its size
 
     BoundingBox box;
-    std::size_t facets = 0;
-    bool emits = false, is_subject = false, must_stay_away = false;
+    std::size_t facets = 0;  ///< number of facets
+    bool emits = false;
+    bool is_subject = false;  ///< true if the part belongs to the subject
+    bool must_stay_away = false;  ///< used by choose_carried: true if the part must not be near the subject
 
     double size() const { return box.diagonal(); }
 
-    /// The axis across a flat part; 3 if the part is not flat.
+    /// Returns the axis (0, 1 or 2) along which a flat part is thin; 3 if the part is not flat.
     std::size_t thin_axis() const {
         const auto sizes = coordinates(box.size());
         const auto least = std::ranges::min_element(sizes);
         return *least <= kFlat * size() ? static_cast<std::size_t>(least - sizes.begin()) : 3;
     }
 
-    /// True if the other part lies inside the box of this one, or in front of or behind a flat part.
+    /// Returns true if the other part lies inside the box of this one or, if this one is flat, inside the box extended
+    /// along its thin axis.
     bool spans(const Part& other) const {
         const auto low = coordinates(other.box.low - box.low), high = coordinates(box.high - other.box.high);
         const std::size_t across = thin_axis();
@@ -108,14 +117,19 @@ struct Part {
     }
 };
 
-/// Reduces `chosen`, which is sorted by size, to the parts that one of the largest parts carries or encloses. Returns
-/// false if there is no such part.
+/// Reduces `chosen`, which is sorted by decreasing size, to the parts that one of its largest parts carries or encloses
+/// (first rule of Subject). Returns false if there is no such part. `parts`: all parts, by their indices in `facets`;
+/// `up`: unit.
 bool choose_carried(std::vector<Part*>& chosen, Facets& facets, const std::vector<Part>& parts, Vec3d up) {
-    constexpr std::size_t kMostCarriers = 64, kOutweighs = 4;
+    // Number of large parts that are tested as carriers.
+    constexpr std::size_t kMaxCarriers = 64;
+    // Least number of facets of the subject, over that of the parts beside the carrier.
+    constexpr std::size_t kOutweighs = 4;
+    // Least size of the scene and of the carrier, over that of the subject.
     constexpr double kMuchLonger = 3.5, kLonger = 2;
     Part whole;
     for (const Part* part : chosen) whole.box.add(part->box);
-    for (std::size_t k = 0; k < std::min(kMostCarriers, chosen.size()); ++k) {
+    for (std::size_t k = 0; k < std::min(kMaxCarriers, chosen.size()); ++k) {
         const Part& carrier = *chosen[k];
         const std::size_t across = carrier.thin_axis();
         const bool is_ground = across < 3 && std::fabs(coordinates(up)[across]) > 0.9;
@@ -130,7 +144,8 @@ bool choose_carried(std::vector<Part*>& chosen, Facets& facets, const std::vecto
             const double above = dot(part->box.middle() - carrier.box.middle(), up);
             if (!carrier.spans(*part)) {
                 facets_beside += part->facets;
-            } else if (!is_ground || above >= -1e-6 * carrier.size()) {  // else the leg of a table
+            } else if (!is_ground || above >= -1e-6 * carrier.size()) {
+                // Parts below the ground, such as the legs of a table, are not carried.
                 carried.push_back(part);
                 subject.box.add(part->box);
                 subject.facets += part->facets;
@@ -139,7 +154,8 @@ bool choose_carried(std::vector<Part*>& chosen, Facets& facets, const std::vecto
         if (!(subject.size() > 0) || subject.facets < kOutweighs * facets_beside ||
             carrier.size() < kLonger * subject.size() || whole.size() < kMuchLonger * subject.size())
             continue;
-        // The backdrop of a studio may be near its subject; a statue is not the surroundings of its small parts.
+        // Parts with more facets than the subject must not be near it: a statue is not the surroundings of its own
+        // small parts. A part with fewer, such as the backdrop of a studio, may be near.
         bool any_is_near = false;
         facets.for_each([&](std::size_t index, const Facet& facet) {
             if (!parts[index].must_stay_away || parts[index].facets <= subject.facets) return;
@@ -154,9 +170,11 @@ bool choose_carried(std::vector<Part*>& chosen, Facets& facets, const std::vecto
     return false;
 }
 
-/// Removes small parts that are far from the large ones. `chosen` is sorted by size.
+/// Removes small parts that are far from the large ones (second rule of Subject). Returns true if it removes any.
+/// `chosen` is sorted by decreasing size.
 bool remove_far(std::vector<Part*>& chosen) {
-    constexpr double kSmall = 0.1, kFar = 8;
+    constexpr double kSmall = 0.1;  // largest size of a small part, over that of the largest part
+    constexpr double kFar = 8;  // least distance from the box of the large parts, over its size
     Part large;
     for (const Part* part : chosen)
         if (part->size() >= kSmall * chosen.front()->size()) large.box.add(part->box);
@@ -188,10 +206,11 @@ Subject::Subject(const Assembly& assembly, Vec3d up) {
         part_boxes.push_back(part->box);
         box.add(part->box);
     }
+    // Walls: facets that lie in a side of the box. Sides are indexed -x, +x, -y, +y, -z, +z.
     const double thickness = 0.02 * box.diagonal();
-    std::array<double, 6> covered_m2{};
-    double inwards_m2 = 0, all_m2 = 0;
-    bool is_lit_within = false;
+    std::array<double, 6> covered_m2{};  // area of the facets in each side
+    double inwards_m2 = 0, all_m2 = 0;  // area of the facets that face inwards less those that face outwards; of all
+    bool is_lit_within = false;  // true if a light lies in the box and shines inwards
     facets.for_each([&](std::size_t index, const Facet& facet) {
         if (!parts[index].is_subject) return;
         const auto to_low = coordinates(facet.box.high - box.low), to_high = coordinates(box.high - facet.box.low),

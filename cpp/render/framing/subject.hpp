@@ -16,11 +16,11 @@ namespace REALCAM_NAMESPACE {
 ///   subject, or keep away from it.
 /// - Small parts are removed if they are farther away than eight times the length of the large parts.
 struct Subject {
-    /// `up`: unit.
+    /// `up`: unit vector.
     Subject(const Assembly& assembly, Vec3d up);
 
-    BoundingBox box;
-    std::vector<BoundingBox> part_boxes;
+    BoundingBox box;  ///< bounds of the subject, m
+    std::vector<BoundingBox> part_boxes;  ///< bounds of each of its parts
     BoundingBox content;  ///< bounds of all triangles that do not lie in a side of `box`
 
     /// Outward unit normals of the sides of the box that are walls: triangles cover at least half of the side, and face
@@ -29,6 +29,7 @@ struct Subject {
 
     /// True if the side towards `direction`, which is nearly along an axis, is a wall.
     bool has_wall(Vec3d direction) const;
+    /// True if the subject is a room: at least five sides are walls.
     bool is_room() const { return walls.size() >= 5; }
 };
 

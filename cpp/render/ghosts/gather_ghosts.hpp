@@ -4,69 +4,79 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Ghosts of light that objects reflect, traced backward: from the film along one ghost path into the scene, where a
-// scene path begins as it does behind the lens. Light that a ray would collect by hitting a light itself is left to
-// samples that start at the lights (splat_ghosts.hpp), except where these cannot find it.
+// Ghosts of light that objects reflect, by path tracing: from a film point along one ghost path through the lens into
+// the scene, where a path continues as one of a pixel sample. The ghost of a light that a ray hits directly is left to
+// light tracing (splat_ghosts.hpp), unless that cannot sample the light.
 
 namespace gather_ghosts_detail {
 
-/// Density below that of any sampled light: its MIS weight makes direct hits of lights count for nothing.
-inline constexpr float kLeftToLights = 1e-30f;
+/// Density of camera rays that is below that of any sampled light, so that the MIS weight of lights which they hit is
+/// 0.
+inline constexpr float kLeftToLightTracing = 1e-30f;
 
+/// Probe of advance_paths that measures nothing.
 struct NoProbe {
     REALCAM_HD void enter(RenderStage) {}
 };
 
-/// Samples at random points of the film, with rays from there through the last vertex plane.
+/// Samples at random film points, with rays from there to random points of the last vertex plane.
 template <int N>
 struct FilmRays {
     SampleBlock<N> block;
-    LensRays<float, N> rays;
-    Lanes<float, N> weight;  ///< irradiance on the film per unit of radiance
+    LensRays<float, N> rays;  ///< in the lens frame, mm
+    Lanes<float, N> weight;  ///< irradiance on the film per unit of radiance along the ray
 };
 
-/// Ray from a film point to a point of the entry rectangle in the last vertex plane.
+/// Ray from a film point to a point of a ghost path's bounds in the last vertex plane (GhostEntry).
 struct FilmRay {
-    Vec3f origin, direction;
-    float weight;
+    Vec3f origin, direction;  ///< lens frame, mm; the direction has the length of the refractive index
+    float weight;  ///< irradiance on the film per unit of radiance along the ray
 };
 
-REALCAM_INLINE FilmRay round_film_ray(const CameraView& camera, const GhostView& ghosts, const GhostEntry* entries,
-                                      Vec2f film, Vec2f u) {
+// Samples a ray for a ghost path. `entries`: the bounds of the path; `film`: film point, mm; `u`: random numbers in [0,
+// 1).
+
+/// For rotationally symmetric lenses: the bounds depend on the distance of the film point from the axis alone.
+REALCAM_INLINE FilmRay rotational_film_ray(const CameraView& camera, const GhostView& ghosts, const GhostEntry* entries,
+                                           Vec2f film, Vec2f u) {
     const auto [x, y] = film;
     const float radius = std::sqrt(x * x + y * y), inverse = 1.0f / select(radius > 0.0f, radius, 1.0f);
     const float out_x = select(radius > 0.0f, x * inverse, 1.0f), out_y = y * inverse;
     const int bin = static_cast<int>(radius / ghosts.film_radius * static_cast<float>(kGhostBins));
-    const EntryPoint at = entry_point(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
-    const float to_x = at.along * out_x - at.across * out_y - x, to_y = at.along * out_y + at.across * out_x - y;
+    const EntryPoint point = entry_point(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
+    const float to_x = point.along * out_x - point.across * out_y - x,
+                to_y = point.along * out_y + point.across * out_x - y;
     const float to_z = -camera.film_distance, squared = to_x * to_x + to_y * to_y + to_z * to_z;
     const float scale = ghosts.film_index / std::sqrt(squared), cosine2 = to_z * to_z / squared;
     return {{x, y, camera.film_distance},
             {scale * to_x, scale * to_y, scale * to_z},
-            ghosts.film_index * ghosts.film_index * cosine2 / (squared * at.density)};
+            ghosts.film_index * ghosts.film_index * cosine2 / (squared * point.density)};
 }
 
-REALCAM_INLINE FilmRay free_film_ray(const CameraView& camera, const GhostView& ghosts, const GhostEntry* entries,
-                                     Vec2f film, Vec2f u) {
+/// For lenses without rotational symmetry.
+REALCAM_INLINE FilmRay freeform_film_ray(const CameraView& camera, const GhostView& ghosts, const GhostEntry* entries,
+                                         Vec2f film, Vec2f u) {
     const int cell = ghosts.grid.cell_of(film);
-    const EntryPoint at = entry_point(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
+    const EntryPoint point = entry_point(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
     const FilmSurface<float> surface = film_surface(camera);
-    const Vec3f from = surface.point(film), to = Vec3f{at.along, at.across, 0} - from;
+    const Vec3f from = surface.point(film), to = Vec3f{point.along, point.across, 0} - from;
     const float squared = dot(to, to), index = ghosts.film_index, scale = index / std::sqrt(squared);
     // Product of the cosines at the film and in the plane, times the squared distance.
     const float cosines = -to.z * dot(to, surface.direction(film, {0, 0, -1}));
-    const float weight = index * index * cosines / (squared * squared * at.density);
+    const float weight = index * index * cosines / (squared * squared * point.density);
     return {from, scale * to, select((cell >= 0) & (cosines > 0.0f), weight, 0.0f)};
 }
 
+/// `path`: index of the ghost path.
 template <LensKind lens_kind>
 REALCAM_INLINE FilmRay film_ray(const CameraView& camera, const GhostView& ghosts, int path, Vec2f film, Vec2f u) {
     if constexpr (lens_kind == LensKind::any)
-        return free_film_ray(camera, ghosts, ghosts.entries + path * kGhostCells, film, u);
+        return freeform_film_ray(camera, ghosts, ghosts.entries + path * kGhostCells, film, u);
     else
-        return round_film_ray(camera, ghosts, ghosts.entries + path * kGhostBins, film, u);
+        return rotational_film_ray(camera, ghosts, ghosts.entries + path * kGhostBins, film, u);
 }
 
+/// Samples the film points and rays of N samples of a block, from its sample `first` on.
 template <LensKind lens_kind, int N>
 REALCAM_INLINE void start_film_rays(const CameraView& camera, const GhostView& ghosts, const GhostBlock& block,
                                     std::uint32_t first, FilmRays<N>& film) {
@@ -83,7 +93,7 @@ REALCAM_INLINE void start_film_rays(const CameraView& camera, const GhostView& g
         const float x = camera.film_middle.x + (1.0f - 2.0f * u.x) * camera.film_half_width,
                     y = camera.film_middle.y + (2.0f * u.y - 1.0f) * camera.film_half_height;
         const FilmRay ray =
-            film_ray<lens_kind>(camera, ghosts, block.number, {x, y}, film.block.random(i, dimension::pupil));
+            film_ray<lens_kind>(camera, ghosts, block.path_index, {x, y}, film.block.random(i, dimension::pupil));
         film.rays.origin.set(i, ray.origin);
         film.rays.direction.set(i, ray.direction);
         film.rays.status[i] = 0;
@@ -93,8 +103,8 @@ REALCAM_INLINE void start_film_rays(const CameraView& camera, const GhostView& g
 
 }  // namespace gather_ghosts_detail
 
-/// Takes N samples of a block, from its sample `first` on, and calls splat(pixel, irradiance, dither) as splat_ghosts
-/// does. `SceneT`: as in advance_paths.
+/// Traces N samples of a block, from its sample `first` on, and calls splat(pixel, irradiance, dither) as splat_ghosts
+/// does. `scene`: as in advance_paths.
 template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N, class SceneT, class Splat>
 REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                      const GhostView& ghosts, GhostRange range, std::uint32_t first, SceneT&& scene,
@@ -104,7 +114,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
     FilmRays<N> film;
     start_film_rays<lens_kind>(camera, ghosts, block, first, film);
     [[maybe_unused]] Lanes<float, N> cell_position,
-        variable;  // position among the wavelength cells, and dispersion variable
+        variable;  // as in GhostSamples
     if constexpr (has_wavelengths) {
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
@@ -116,7 +126,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
     PassedPower<N> passed;
     pass_ghost_lens_path<lens_kind, has_wavelengths>(ghosts, block.path, film.rays, variable, passed);
     CameraRays<N> camera_rays;
-    // A sample lands on one of width * height pixels, and takes this path with the given probability.
+    // A sample has a random pixel, out of width * height, and follows this ghost path with a given probability.
     const float scale = static_cast<float>(camera.width) * static_cast<float>(camera.height) / block.path.probability;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
@@ -129,7 +139,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
     PathResults<N> results;
     if constexpr (scene_kind == SceneKind::any) expose_rays(camera, film.block, camera_rays, path.rays.time);
     start_paths(camera_rays, path, results);
-    for (int i = 0; i < N; ++i) set_first_density<scene_kind>(camera, kLeftToLights, i, path);
+    for (int i = 0; i < N; ++i) set_first_density<scene_kind>(camera, kLeftToLightTracing, i, path);
     NoProbe probe;
     for (int bounce = 0;
          advance_paths<scene_kind>(view, camera, settings, film.block, bounce, scene, probe, path, results);)

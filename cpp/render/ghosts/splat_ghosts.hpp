@@ -6,36 +6,38 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Ghosts and starbursts of lights, traced forward: from a light through a point in front of the lens, along one ghost
-// path or the direct path, to the point of the film that it reaches.
+// Ghosts and starbursts of lights, by light tracing: from a light through a point in front of the lens, along one ghost
+// path (two reflections in the lens) or the direct path, to the film point that it reaches.
 
 namespace splat_ghosts_detail {
 
-/// Dimension pairs of the random sequence, after that of the ghost path.
+/// Indices of the pairs of random numbers of a sample, by their use. Pair 0 chooses the ghost path.
 namespace ghost_dimension {
 inline constexpr std::uint32_t light = 1, entry = 2, time = 3, diffraction = 4;
 }
 
-/// Axes of a lens in the scene.
+/// Frame of the camera's lens in render space at one time. Lens coordinates: see ARCHITECTURE.md.
 struct LensFrame {
     CameraPlacement camera;
     float front_vertex_m;
 
-    REALCAM_INLINE Vec3f direction(Vec3f scene) const {
-        return {dot(scene, camera.right), dot(scene, camera.up), dot(scene, camera.backward)};
+    /// Converts a vector from render space to the axes of the lens.
+    REALCAM_INLINE Vec3f direction(Vec3f in_scene) const {
+        return {dot(in_scene, camera.right), dot(in_scene, camera.up), dot(in_scene, camera.backward)};
     }
-    /// Scene coordinates of a point that is given in mm, relative to the front vertex.
+    /// Converts a point in mm, relative to the front vertex, to render space.
     REALCAM_INLINE Vec3f point_in_scene(Vec3f lens_mm) const {
         return camera.position + (0.001f * lens_mm.x) * camera.right + (0.001f * lens_mm.y) * camera.up +
                (0.001f * lens_mm.z - front_vertex_m) * camera.backward;
     }
 };
 
+/// Returns the lens frame at a time, as a fraction of the exposure.
 REALCAM_INLINE LensFrame lens_frame(const CameraView& camera, float time) {
     return {camera_at(camera, time), camera.front_vertex_m};
 }
 
-/// Index of the pixel at a film point; -1 if it lies outside the film.
+/// Returns the index of the pixel at a film point, mm; -1 if the point lies outside the film.
 REALCAM_INLINE std::int32_t pixel_at(const CameraView& camera, float x, float y) {
     const float column =
         0.5f * static_cast<float>(camera.width) * (1.0f - (x - camera.film_middle.x) / camera.film_half_width);
@@ -46,13 +48,14 @@ REALCAM_INLINE std::int32_t pixel_at(const CameraView& camera, float x, float y)
     return inside ? static_cast<std::int32_t>(row) * camera.width + static_cast<std::int32_t>(column) : -1;
 }
 
-/// Time from the beginning of the first row's exposure to the end of the last row's.
+/// Returns the time from the beginning of the first row's exposure to the end of the last row's (rolling shutter), in
+/// the unit of CameraView::exposed_time. Samples from lights are distributed uniformly over it.
 REALCAM_INLINE float all_times(const CameraView& camera) {
     return camera.exposed_time + camera.row_time * static_cast<float>(camera.height);
 }
 
-/// Weight of a sample of this time on a row of pixels. A row receives the light of its exposure or, if that is shorter,
-/// of the time until the next row begins.
+/// Returns the weight with which a sample at a time counts in a row of pixels, for times that are distributed uniformly
+/// over all_times: 0 outside the row's exposure, or, if that is shorter, outside the time until the next row begins.
 REALCAM_INLINE float exposure_weight(const CameraView& camera, std::int32_t row, float time) {
     if (!(camera.row_time > 0.0f)) return 1.0f;
     const float begin = static_cast<float>(row) * camera.row_time;
@@ -60,31 +63,35 @@ REALCAM_INLINE float exposure_weight(const CameraView& camera, std::int32_t row,
     return time >= begin && time <= begin + window ? all_times(camera) / window : 0.0f;
 }
 
-/// Samples on their way from a light to the film.
+/// State of N samples that are traced from lights to the film.
 template <int N>
 struct GhostSamples {
-    Lanes<std::uint32_t, N> number;
-    Lanes<float, N> cell_position, variable;  ///< wavelength's position among the cells, and dispersion variable
-    Lanes<float, N> time;
+    Lanes<std::uint32_t, N> number;  ///< random bits of the sample
+    Lanes<float, N> cell_position;  ///< position of its wavelength among the wavelength cells (DispersionView)
+    Lanes<float, N> variable;  ///< dispersion variable of that wavelength (WavelengthVariable)
+    Lanes<float, N> time;  ///< fraction of the exposure
     LightPick lights[N];
     Vec3Lanes<float, N> from;  ///< unit, towards the light from the front vertex, in the lens's axes
-    LensRays<float, N> rays;  ///< first in front of the lens, then behind it
-    Lanes<float, N> density;  ///< of the entry point, per mm^2
-    Lanes<float, N> light_density;  ///< of the point on the lights, per steradian; kDelta: no ray hits it
-    ColorLanes<N> color;  ///< flux, then irradiance that its pixel would have if all samples were like it
+    LensRays<float, N> rays;  ///< in the lens frame, mm: in front of the lens, then (after the trace) behind it
+    Lanes<float, N> density;  ///< density of the entry point, per mm^2
+    Lanes<float, N> light_density;  ///< density of the point on the lights, seen from the front vertex, per steradian;
+                                    ///< kDelta if no ray hits the light
+    ColorLanes<N> color;  ///< flux into the lens, then (after reach_film) the irradiance of the sample's pixel if all
+                          ///< samples were equal to this one
     SceneRays<N> shadow;
 };
 
 /// Sets the shadow ray from a point to the light that was sampled there.
 template <int N>
 REALCAM_INLINE void set_shadow_ray(Vec3f from, const LightSample& light, int lane, GhostSamples<N>& samples) {
-    const bool is_near = light.distance < kFarAway;
+    const bool is_finite = light.distance < kFarAway;  // see ShadowRays::set in scatter_paths.hpp
     samples.shadow.origin.set(lane, from);
-    samples.shadow.direction.set(lane, is_near ? light.distance * light.direction : light.direction);
-    samples.shadow.far[lane] = is_near ? (light.reach > 0.0f ? light.reach : 0.0f) : kFarAway;
+    samples.shadow.direction.set(lane, is_finite ? light.distance * light.direction : light.direction);
+    samples.shadow.far[lane] = is_finite ? (light.reach > 0.0f ? light.reach : 0.0f) : kFarAway;
 }
 
-/// Chooses lights, as seen from the front vertex.
+/// Chooses a light for each sample by its illuminance at the front vertex. `stream`: of random numbers; `first`: index
+/// of the first sample.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camera, std::uint32_t stream,
                                   std::uint32_t first, GhostSamples<N>& samples) {
@@ -102,7 +109,7 @@ REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camer
         if (light.probability > 0.0f) {
             const LightSample sample = sample_picked<scene_kind>(view, middle, light);
             from = frame.direction(sample.direction);
-            // For area lights that are seen from the side, kDelta means that there is no light.
+            // An area light seen edge-on has the density kDelta and emits no light to the lens.
             if (light.kind == LightKind::area || light.kind == LightKind::environment)
                 samples.light_density[i] = sample.pdf < kDelta ? light.probability * sample.pdf : 0.0f;
         }
@@ -110,67 +117,82 @@ REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camer
     }
 }
 
-/// Point in front of the lens through which light of a direction may take a ghost path.
+/// Largest z of a direction to a light that is traced; z points backward, and light from nearly behind cannot enter.
+inline constexpr float kMaxLightZ = 0.9f;
+
+/// Point in front of the lens through which light from a direction may enter and follow a ghost path.
 struct LightEntry {
-    Vec3f origin;
-    float density;  ///< per mm^2
-    bool seen;  ///< false if no light of that direction passes
+    Vec3f origin;  ///< in the lens frame relative to the front vertex, mm; in the plane perpendicular to the light
+    float density;  ///< density with which the point was sampled, per mm^2
+    bool can_pass;  ///< false if no light from that direction can follow the path
 };
 
-REALCAM_INLINE LightEntry round_light_entry(const GhostView& ghosts, const GhostEntry* entries, Vec3f from, Vec2f u) {
+// Samples an entry point for a ghost path. `entries`: the entrance-pupil bounds of the path; `from`: unit vector
+// towards the light in the lens's axes; `u`: random numbers in [0, 1).
+
+/// For rotationally symmetric lenses: the bounds depend on the angle to the axis alone.
+REALCAM_INLINE LightEntry rotational_light_entry(const GhostView& ghosts, const GhostEntry* entries, Vec3f from,
+                                                 Vec2f u) {
     const auto [x, y, z] = from;
     const float sine = std::sqrt(x * x + y * y), half_tangent = sine / (1.0f - z);  // NaN directly behind the lens
-    const bool seen = (half_tangent < ghosts.largest_half_tangent) & (z < 0.9f);
-    const int bin = static_cast<int>(select(seen, half_tangent / ghosts.largest_half_tangent, 0.0f) *
+    const bool can_pass = (half_tangent < ghosts.largest_half_tangent) & (z < kMaxLightZ);
+    const int bin = static_cast<int>(select(can_pass, half_tangent / ghosts.largest_half_tangent, 0.0f) *
                                      static_cast<float>(kGhostBins));
-    const EntryPoint at = entry_point(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
+    const EntryPoint point = entry_point(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
     const float inverse = 1.0f / select(sine > 0.0f, sine, 1.0f);
     const float away_x = select(sine > 0.0f, x * inverse, 1.0f), away_y = y * inverse;
-    return {{-at.along * z * away_x - at.across * away_y, -at.along * z * away_y + at.across * away_x, at.along * sine},
-            at.density,
-            seen};
+    return {{-point.along * z * away_x - point.across * away_y, -point.along * z * away_y + point.across * away_x,
+             point.along * sine},
+            point.density,
+            can_pass};
 }
 
-REALCAM_INLINE LightEntry free_light_entry(const GhostView& ghosts, const GhostEntry* entries, Vec3f from, Vec2f u) {
-    const bool ahead = from.z < 0.9f;
-    const Vec3f light = select(ahead, from, Vec3f{0, 0, -1});
+/// For lenses without rotational symmetry.
+REALCAM_INLINE LightEntry freeform_light_entry(const GhostView& ghosts, const GhostEntry* entries, Vec3f from,
+                                               Vec2f u) {
+    const bool is_ahead = from.z < kMaxLightZ;
+    const Vec3f light = select(is_ahead, from, Vec3f{0, 0, -1});
     const int cell = ghosts.grid.cell_of(half_tangents(light));
-    const EntryPoint at = entry_point(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
+    const EntryPoint point = entry_point(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
     const LightAxes axes = light_axes(light);
-    return {at.along * axes.x + at.across * axes.y, at.density, ahead && cell >= 0};
+    return {point.along * axes.x + point.across * axes.y, point.density, is_ahead && cell >= 0};
 }
 
+/// `path`: index of the ghost path.
 template <LensKind lens_kind>
 REALCAM_INLINE LightEntry light_entry(const GhostView& ghosts, int path, Vec3f from, Vec2f u) {
     if constexpr (lens_kind == LensKind::any)
-        return free_light_entry(ghosts, ghosts.entries + path * kGhostCells, from, u);
+        return freeform_light_entry(ghosts, ghosts.entries + path * kGhostCells, from, u);
     else
-        return round_light_entry(ghosts, ghosts.entries + path * kGhostBins, from, u);
+        return rotational_light_entry(ghosts, ghosts.entries + path * kGhostBins, from, u);
 }
 
+/// Samples the entry point of each sample's light. Samples without one are marked as vignetted.
 template <LensKind lens_kind, int N>
 REALCAM_INLINE void choose_entries(const GhostView& ghosts, const GhostBlock& block, std::uint32_t first,
                                    GhostSamples<N>& samples) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const Vec2f u = sample_2d(block.stream, first + static_cast<std::uint32_t>(i), ghost_dimension::entry);
-        const LightEntry entry = light_entry<lens_kind>(ghosts, block.number, samples.from[i], u);
+        const LightEntry entry = light_entry<lens_kind>(ghosts, block.path_index, samples.from[i], u);
         samples.rays.origin.set(i, entry.origin);
         samples.rays.direction.set(i, {0, 0, 1});
-        samples.rays.status[i] = select(entry.seen, 0, static_cast<int>(RayStatus::vignetted));
+        samples.rays.status[i] = select(entry.can_pass, 0, static_cast<int>(RayStatus::vignetted));
         samples.density[i] = entry.density;
     }
 }
 
-/// Sends the light from its own position to the entry point. `scale`: of the flux.
+/// Samples each chosen light from its entry point, and sets flux, ray into the lens and shadow ray. `scale`: factor of
+/// the flux.
 template <SceneKind scene_kind, int N>
-REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, float scale, GhostSamples<N>& samples) {
+REALCAM_INLINE void start_at_lights(const SceneView& view, const CameraView& camera, float scale,
+                                    GhostSamples<N>& samples) {
     LensRays<float, N>& rays = samples.rays;
     for (int i = 0; i < N; ++i) {
         if (rays.status[i] != 0) continue;
         const LensFrame frame = lens_frame(camera, samples.time[i]);
-        const LightReceiver here{frame.point_in_scene(rays.origin[i]), {0, 0, 0}, samples.time[i]};
-        const LightSample light = sample_picked<scene_kind>(view, here, samples.lights[i]);
+        const LightReceiver receiver{frame.point_in_scene(rays.origin[i]), {0, 0, 0}, samples.time[i]};
+        const LightSample light = sample_picked<scene_kind>(view, receiver, samples.lights[i]);
         // A near light has another direction here than at the front vertex, and the entry plane is perpendicular to the
         // latter.
         const Vec3f to_light = frame.direction(light.direction);
@@ -179,16 +201,17 @@ REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, 
             rays.status[i] = static_cast<int>(RayStatus::vignetted);
             continue;
         }
-        const float over = scale * cosine / (samples.density[i] * samples.lights[i].probability);
-        samples.color.set(i, bounded_light(over * light.irradiance));
+        const float weight = scale * cosine / (samples.density[i] * samples.lights[i].probability);
+        samples.color.set(i, bounded_light(weight * light.irradiance));
         rays.direction.set(i, -to_light);
-        set_shadow_ray(here.position, light, i, samples);
+        set_shadow_ray(receiver.position, light, i, samples);
     }
 }
 
-/// Diffracts light that geometrical optics brings to `film`; returns the new film point and scales the light.
-/// Starbursts are the light that the edges of the aperture diffract; for lights that rays hit, the part of it that
-/// pixel samples leave to splats (set_first_density). The images of lights get all other light.
+/// Deflects light that geometrical optics would bring to the point `film` (mm) by diffraction at the aperture; returns
+/// the new film point and weights the sample's light. For GhostLight::starbursts the deflection is one of those by the
+/// aperture's edges; for lights that camera rays can hit, the light has a MIS weight against these (set_first_density).
+/// GhostLight::direct gets all other light. `u`, `v`: random numbers.
 template <int N>
 REALCAM_INLINE Vec2f diffracted(const CameraView& camera, GhostLight light, Vec2f film, Vec2f u, Vec2f v, int lane,
                                 GhostSamples<N>& samples) {
@@ -210,7 +233,8 @@ REALCAM_INLINE Vec2f diffracted(const CameraView& camera, GhostLight light, Vec2
     return {film.x + nm * kick.x, film.y + nm * kick.y};
 }
 
-/// Finds the pixels that the light reaches, or -1, and its contribution there if nothing in the scene occludes it.
+/// Finds the pixel that each sample's light reaches, or -1, and its irradiance there if nothing in the scene occludes
+/// the light; activates the shadow rays of these samples. `passed`: fraction of the power that passes the lens.
 template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N>
 REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts, std::uint32_t stream,
                                std::uint32_t first, const PassedPower<N>& passed, GhostSamples<N>& samples,
@@ -244,9 +268,10 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
 
 }  // namespace splat_ghosts_detail
 
-/// Takes N samples of a block, from its sample `first` on, and calls splat(pixel, irradiance, dither) for each that
-/// lights a pixel. The irradiance is that of the pixel if all samples were like this one; `dither`: a random number.
-/// `SceneT`: as in advance_paths.
+/// Traces N samples of a block from lights to the film, and calls splat(pixel, irradiance, dither) for each that
+/// reaches a pixel: `irradiance`, lux, of the pixel if all samples were equal to this one; `dither`: random number in
+/// [0, 1) for rounding. `range`: selects the block; `first`: index of the first sample in it. `scene`: as in
+/// advance_paths.
 template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N, class SceneT, class Splat>
 REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& camera, const GhostView& ghosts,
                                     GhostRange range, std::uint32_t first, SceneT&& scene, Splat&& splat) {
@@ -271,14 +296,14 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
     }
     choose_lights<scene_kind>(view, camera, stream, first_sample, samples);
     choose_entries<lens_kind>(ghosts, block, first_sample, samples);
-    send_light<scene_kind>(view, camera, 1.0f / block.path.probability, samples);
+    start_at_lights<scene_kind>(view, camera, 1.0f / block.path.probability, samples);
     PassedPower<N> passed;
     pass_ghost_lens_path<lens_kind, has_wavelengths>(ghosts, block.path, samples.rays, samples.variable, passed);
-    Lanes<std::int32_t, N> pixel, hidden;
+    Lanes<std::int32_t, N> pixel, occluded;
     reach_film<lens_kind, scene_kind, has_wavelengths>(camera, ghosts, stream, first_sample, passed, samples, pixel);
-    scene.occluded(samples.shadow, hidden);
+    scene.occluded(samples.shadow, occluded);
     for (int i = 0; i < N; ++i)
-        if (samples.shadow.active[i] && !hidden[i])
+        if (samples.shadow.active[i] && !occluded[i])
             splat(pixel[i], samples.color[i], unit_float(hash32(samples.number[i])));
 }
 

@@ -4,22 +4,22 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// First surface that each sample of a block hits.
+/// First surface that each sample of a block hits, one lane per sample.
 template <int N>
 struct LayerResults {
     Lanes<float, N> weight;  ///< weight of the sample in the exposure; 0: blocked in the lens
     Lanes<std::int32_t, N> met;  ///< 1 if a surface was hit
     Vec3Lanes<float, N> normal;  ///< shading normal, unit, scene axes, on the visible side
     ColorLanes<N> albedo;
-    Lanes<float, N> circle_mm;  ///< circle of confusion, diameter on the film
+    Lanes<float, N> circle_mm;  ///< diameter of the circle of confusion on the film; also set if no surface was hit
 };
 
 /// Accumulated layers of one pixel, weighted as its samples are in the exposure.
 struct LayerSum {
-    double weight;  ///< sum over all samples that passed the lens
-    double met;     ///< sum over those that hit a surface
-    double normal[3], albedo[3];  ///< sums over those that hit a surface
-    double circle_mm;             ///< sum over all
+    double weight;  ///< sum of the weights of all samples that passed the lens
+    double met;     ///< sum of the weights of the samples that hit a surface
+    double normal[3], albedo[3];  ///< weighted sums over the samples that hit a surface
+    double circle_mm;             ///< weighted sum over all samples that passed the lens
 
     REALCAM_HD LayerSum& operator+=(const LayerSum& other) {
         weight += other.weight;
@@ -54,7 +54,7 @@ struct PixelCentreSurface {
     std::uint32_t triangle;  ///< kNoTriangle if there is no surface
     std::uint32_t instance;  ///< kNoInstance for static geometry
     std::uint32_t material;  ///< index in the scene or object to which the triangle belongs
-    Vec3f position;  ///< in the placed scene; without a surface, the direction of the ray
+    Vec3f position;  ///< in render space; without a surface, the direction of the ray
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -13,9 +13,11 @@ namespace realcam {
 
 namespace {
 
-/// Positions of surfaces when the exposure of a row of pixels begins, in its middle, and when it ends.
+/// Positions of surfaces in the camera's frame at three times of the exposure of a row of pixels: its begin, its middle
+/// and its end.
 class RowMotion {
 public:
+    /// Index of a time in `times_`.
     enum When : std::size_t { begin, middle, end };
 
     RowMotion(const Assembly& scene, const Camera& camera, int row) : scene_(scene) {
@@ -26,13 +28,16 @@ public:
             from_scene_[k] = camera_detail::scene_from_camera(pose_at(camera, times_[k])).inverse();
     }
 
-    /// Position in the axes of the camera at `when`, for a point that lies at `point_m` in the scene in mid-exposure.
+    /// Returns the position in the camera's frame at `when` of a surface point that lies at `point_m` in the scene at
+    /// mid-exposure. `instance`: to which the point belongs, or kNoInstance.
     Vec3d point(Vec3d point_m, std::uint32_t instance, When when) {
         return from_scene_[when].point(moved(point_m, instance, when));
     }
+    /// Converts a direction from the scene to the camera's frame at `when`.
     Vec3d direction(Vec3d direction, When when) const { return from_scene_[when].direction(direction); }
 
 private:
+    /// Returns the position in the scene at `when` of that surface point.
     Vec3d moved(Vec3d point_m, std::uint32_t instance, When when) {
         if (instance == kNoInstance || !scene_.instances[instance].motion) return point_m;
         const auto [known, is_new] = transforms_.try_emplace(instance);
@@ -44,7 +49,7 @@ private:
     const Assembly& scene_;
     std::array<double, 3> times_;
     std::array<InverseAffine<double>, 3> from_scene_;
-    std::map<std::uint32_t, std::array<Affine<double>, 3>> transforms_;
+    std::map<std::uint32_t, std::array<Affine<double>, 3>> transforms_;  ///< scene from object, of moving instances
 };
 
 }  // namespace
@@ -61,18 +66,19 @@ LayerImage motion_vectors(const std::vector<PixelCentreSurface>& film, const Ass
     for (std::size_t row = 0; row * width < film.size(); ++row) {
         if (!motion || camera.shutter.readout_time_s > 0) motion.emplace(scene, camera, static_cast<int>(row));
         for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
-            const PixelCentreSurface& seen = film[i];
-            const bool is_surface = seen.triangle != kNoTriangle, is_dark = std::isnan(seen.depth);
-            const bool may_move =
-                camera.moves() || (is_surface && seen.instance != kNoInstance && scene.instances[seen.instance].motion);
-            if (!is_dark && !(anything_moves && may_move)) continue;
-            const Vec3d point_m = static_cast<Vec3d>(seen.position);
+            const PixelCentreSurface& surface = film[i];
+            // A blocked pixel is one whose centre ray does not pass the lens.
+            const bool is_surface = surface.triangle != kNoTriangle, is_blocked = std::isnan(surface.depth);
+            const bool may_move = camera.moves() || (is_surface && surface.instance != kNoInstance &&
+                                                     scene.instances[surface.instance].motion);
+            if (!is_blocked && !(anything_moves && may_move)) continue;
+            const Vec3d point_m = static_cast<Vec3d>(surface.position);
             const auto pixel_at = [&](RowMotion::When when) {
-                return is_surface ? map->pixel_of(motion->point(point_m + origin_m, seen.instance, when), false)
+                return is_surface ? map->pixel_of(motion->point(point_m + origin_m, surface.instance, when), false)
                                   : map->pixel_of(motion->direction(point_m, when), true);
             };
             std::optional<Vec2<double>> from, to;
-            if (!is_dark) from = pixel_at(RowMotion::begin), to = pixel_at(RowMotion::end);
+            if (!is_blocked) from = pixel_at(RowMotion::begin), to = pixel_at(RowMotion::end);
             const bool is_known = from && to;
             image.values[2 * i] = is_known ? static_cast<float>(to->x - from->x) : kNone;
             image.values[2 * i + 1] = is_known ? static_cast<float>(to->y - from->y) : kNone;
@@ -81,23 +87,23 @@ LayerImage motion_vectors(const std::vector<PixelCentreSurface>& film, const Ass
     return image;
 }
 
-std::optional<SceneAndCamera> without_left_out_motion(const Assembly& scene, const Camera& camera,
+std::optional<SceneAndCamera> without_disabled_motion(const Assembly& scene, const Camera& camera,
                                                       const EffectChoice& effects) {
     if (effects.motion_blur && effects.rolling_shutter) return std::nullopt;
-    SceneAndCamera seen{scene, camera};
-    Shutter& shutter = seen.camera.shutter;
+    SceneAndCamera changed{scene, camera};
+    Shutter& shutter = changed.camera.shutter;
     if (!effects.rolling_shutter) shutter.readout_time_s = 0;
-    if (effects.motion_blur) return seen;
+    if (effects.motion_blur) return changed;
     if (shutter.readout_time_s > 0) {
         shutter.blurs = false;
-        return seen;
+        return changed;
     }
     // All rows are exposed at one instant, at which the scene stands still, so that the kernels without motion suffice.
     const double middle_s = shutter.opens_s + 0.5 * camera.exposure_time_s;
-    seen.camera.pose = pose_at(camera, middle_s);
-    seen.camera.motion.clear();
-    seen.scene = standing_at(scene, middle_s);
-    return seen;
+    changed.camera.pose = pose_at(camera, middle_s);
+    changed.camera.motion.clear();
+    changed.scene = standing_at(scene, middle_s);
+    return changed;
 }
 
 }  // namespace realcam

@@ -12,15 +12,17 @@ namespace realcam {
 namespace {
 
 constexpr int kBlock = PupilTracer::kBlock;
-/// Least number of hits that determine the extent of the entry.
+/// Least number of hits that determine the bounds; with fewer, the search takes more rays and a wider margin.
 constexpr int kEnoughHits = 32;
-constexpr int kMostRounds = 10;
+/// Limit on the repetitions of a search.
+constexpr int kMaxRounds = 10;
 
+/// Returns the tangent of half the angle between the axis and a direction in front of the lens, a unit vector.
 float half_tangent_of(Vec3f from) {
     return hypotenuse(from.x, from.y) / (1 - from.z);
 }
 
-/// Plane of the entries in the lens's own axes.
+/// Returns the entry plane of a light in the axes of the lens, with the front vertex at the origin.
 EntryPlane plane_in_lens(const TracedLight& light) {
     CameraPlacement lens{};
     lens.right = {1, 0, 0};
@@ -40,8 +42,8 @@ LightEntries::LightEntries(const SceneView& scene, const CameraView& camera, con
       pupil_entries_(setup.pupil_entries()),
       front_reach_(entry_reach(setup.camera().lens)) {}
 
-Vec3f LightEntries::sample_position(const LightGroup& group, std::uint32_t number) const {
-    const Vec2f u = sample_joint_2d(0, number, 1), v = sample_joint_2d(0, number, 2);
+Vec3f LightEntries::sample_position(const LightGroup& group, std::uint32_t index) const {
+    const Vec2f u = sample_joint_2d(0, index, 1), v = sample_joint_2d(0, index, 2);
     const float time = v.x * splat_ghosts_detail::all_times(camera_);
     const splat_ghosts_detail::LensFrame frame = splat_ghosts_detail::lens_frame(camera_, time);
     const std::int32_t light = group.lights[static_cast<std::size_t>(v.y * static_cast<float>(group.lights.size()))];
@@ -69,27 +71,27 @@ LightEntries::Probe LightEntries::probe(const Positions& positions, const Traced
     };
     for (int first = 0; first < count; first += kBlock) {
         PupilTracer::Rays rays;
-        Vec2f at[kBlock];
+        Vec2f entries[kBlock];  // in the plane, mm
         for (int k = 0; k < kBlock; ++k) {
-            const auto number = static_cast<std::uint32_t>(first + k);
-            at[k] = in.at(sample_joint_2d(0, number, 0));
-            const Vec3f entry = at[k].x * plane.along + at[k].y * plane.across,
-                        position = positions[number % positions.size()];
+            const auto index = static_cast<std::uint32_t>(first + k);
+            entries[k] = in.at(sample_joint_2d(0, index, 0));
+            const Vec3f entry = entries[k].x * plane.along + entries[k].y * plane.across,
+                        position = positions[index % positions.size()];
             const Vec3f direction = light.kind == TracedLightKind::sun ? -position : entry - position;
             rays.origin.set(k, entry);
             rays.direction.set(k, normalized(direction));
-            rays.status[k] = dot(direction, plane.from) < 0 ? 0 : static_cast<int>(RayStatus::vignetted);
+            rays.status[k] = dot(direction, plane.normal) < 0 ? 0 : static_cast<int>(RayStatus::vignetted);
         }
         tracer_.trace(to_film_, rays);
         for (int k = 0; k < kBlock; ++k) {
             if (rays.status[k] != 0) continue;
             const Vec2f landing = film_surface(camera_).landing(rays.origin[k], rays.direction[k]);
             const Vec2f film = {landing.x - camera_.film_middle.x, landing.y - camera_.film_middle.y};
-            // One pixel more, for other wavelengths and for diffraction.
+            // A margin of one pixel, for other wavelengths and for diffraction.
             if (!(std::fabs(film.x) <= camera_.film_half_width + 1 / columns_per_mm) ||
                 !(std::fabs(film.y) <= camera_.film_half_height + 1 / columns_per_mm))
                 continue;
-            widen(probe.entries, at[k].x, at[k].y);
+            widen(probe.entries, entries[k].x, entries[k].y);
             widen(probe.film, columns_per_mm * film.x, columns_per_mm * film.y);
             ++probe.hits;
         }
@@ -97,7 +99,7 @@ LightEntries::Probe LightEntries::probe(const Positions& positions, const Traced
     return probe;
 }
 
-std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
+std::optional<FoundLight> LightEntries::find(const LightGroup& group) const {
     TracedLight light{};
     light.kind = group.kind;
     Positions positions;
@@ -111,20 +113,23 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     const float sine = hypotenuse(light.from.x, light.from.y);
     const Vec2f away = sine > 0 ? Vec2f{light.from.x / sine, light.from.y / sine} : Vec2f{1, 0};
     light.along = {-light.from.z * away.x, -light.from.z * away.y, sine};
-    // A point of the front that is nearer to the light may see it within the field even if the front's centre does not.
+    // The light may lie outside the field of view of the front's centre, but within that of the point of the front that
+    // is nearest to it.
     Vec3f nearest = middle;
     if (light.kind != TracedLightKind::sun) {
         nearest = (1.0f / static_cast<float>(positions.size())) * middle;
-        const float beside = hypotenuse(nearest.x, nearest.y);
-        nearest = {std::max(0.0f, beside - front_reach_), 0, nearest.z};
+        const float off_axis = hypotenuse(nearest.x, nearest.y);
+        nearest = {std::max(0.0f, off_axis - front_reach_), 0, nearest.z};
     }
     GhostEntry entry{};  // unknown: the whole front is searched
     if (pupil_entries_) {
-        if (!(half_tangent_of(normalized(nearest)) < 1.5f * pupil_entries_->largest_half_tangent()))
+        constexpr float kFieldMargin = 1.5f;  // the pupil's rays sample the field only at some angles
+        if (!(half_tangent_of(normalized(nearest)) < kFieldMargin * pupil_entries_->largest_half_tangent()))
             return std::nullopt;
         entry = pupil_entries_->at(half_tangent_of(light.from));
     }
-    // A near light is seen in another position and size than a distant one: the search begins at twice the size.
+    // The bounds of the pupil are those of distant light. Those of a near light differ in position and size: the search
+    // begins in a square about them of at least twice their size.
     const float middle_along = 0.5f * (entry.low + entry.high),
                 reach = std::max({entry.high - entry.low, 2 * entry.half_width, front_reach_ / 64});
     const PlaneRectangle front = {-front_reach_, front_reach_, -front_reach_, front_reach_};
@@ -133,8 +138,9 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     if (is_front) in = front;
     Probe found;
     bool is_coarse = true;
-    for (int round = 0; round < kMostRounds; ++round) {
-        // Light outside the rectangle of a point or a sun is lost, while pixel samples find that of an emitter.
+    for (int round = 0; round < kMaxRounds; ++round) {
+        // Points and suns get more rays: their light outside the rectangle would be lost, while pixel samples find that
+        // of emissive triangles.
         int rays = light.kind == TracedLightKind::triangles ? kBlock : 4 * kBlock;
         found = probe(positions, light, in, rays);
         if (found.hits < kEnoughHits && rays == kBlock) found = probe(positions, light, in, rays = 4 * kBlock);
@@ -144,7 +150,8 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
             in = front;
             continue;
         }
-        // A margin for light between the rays.
+        // A margin for light that passes between the traced rays: a fraction of the bounds of the hits, or of the mean
+        // distance of the rays if that is larger.
         const auto widened = [&](float low, float high, float whole) {
             const float share = found.hits < kEnoughHits ? 1.0f : is_coarse ? 0.3f : 0.1f;
             const float margin = share * std::max(high - low, whole / std::sqrt(static_cast<float>(rays)));
@@ -154,12 +161,13 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
         const auto [low, high] = widened(box.low_along, box.high_along, in.high_along - in.low_along);
         const auto [left, right] = widened(box.low_across, box.high_across, in.high_across - in.low_across);
         const bool is_inside = in.holds(low, left) && in.holds(high, right);
-        if (is_inside || round + 1 == kMostRounds) {
+        if (is_inside || round + 1 == kMaxRounds) {
             in = {low, high, left, right};
             if (!is_coarse) break;
             is_coarse = false;
         } else {
-            // The pupil had few rays in this direction, as near the axis: there is more light next to the rectangle.
+            // The hits reach the border, because the bounds of the pupil rest on few rays near the axis: the rectangle
+            // is doubled.
             const float along = 0.5f * (in.high_along - in.low_along), across = 0.5f * (in.high_across - in.low_across);
             in = {in.low_along - along, in.high_along + along, in.low_across - across, in.high_across + across};
         }

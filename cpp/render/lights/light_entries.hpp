@@ -8,39 +8,43 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A light with its entry rectangle.
+/// Traced light whose entrance-pupil bounds (TracedLight::entries) are known.
 struct FoundLight {
     TracedLight light;
-    double pixels;  ///< pixels of the film that its light covers
+    double pixels;  ///< number of pixels of the film that its image, blurred by the lens, covers
 };
 
-/// Searches for the area in which the light of lamps enters the lens, by tracing rays from them: first around the area
-/// in which rays of the pupil leave the lens in their direction, then in the rectangle that contains the hits. If the
-/// hits reach the border of the searched rectangle, it is enlarged.
+/// Entrance-pupil search for lights: finds the rectangle in which the light of a lamp enters the lens, by tracing rays
+/// from the lamp to the film. The search begins around the area in which rays of the camera's own pupil leave the lens
+/// in that direction, and is repeated in the rectangle that contains the hits. If the hits reach the border of the
+/// searched rectangle, it is enlarged.
 class LightEntries {
 public:
-    /// `camera`: that of `setup`.
+    /// `camera`: view of the camera of `setup`, in the render space of `scene`. All arguments must outlive this object.
     LightEntries(const SceneView& scene, const CameraView& camera, const CameraSetup& setup, const PupilTracer& tracer);
 
-    /// Returns std::nullopt if no light of the group reaches the film.
-    std::optional<FoundLight> of(const LightGroup& group) const;
+    /// Finds the bounds of a group of lights. Returns std::nullopt if none of its light reaches the film.
+    std::optional<FoundLight> find(const LightGroup& group) const;
 
 private:
-    /// Hits of rays through a rectangle.
+    /// Result of rays through a rectangle: those that reach the film are hits.
     struct Probe {
         int hits = 0;
         PlaneRectangle entries{}, film{};  ///< bounds of the hits: at the entry, mm, and on the film, pixels
     };
 
+    /// Points on the lights of a group, as sample_position returns them.
     using Positions = std::array<Vec3f, 64>;
 
-    /// Point of the group in the lens's frame, mm; for a sun, the direction towards it.
-    Vec3f sample_position(const LightGroup& group, std::uint32_t number) const;
+    /// Samples a point on the group's lights, in the lens frame relative to the front vertex, mm; for a sun, returns
+    /// the unit vector towards it. `index`: of the sample.
+    Vec3f sample_position(const LightGroup& group, std::uint32_t index) const;
+    /// Traces `rays` rays from the positions through random points of the rectangle `in` of the light's entry plane.
     Probe probe(const Positions& positions, const TracedLight& light, const PlaneRectangle& in, int rays) const;
 
     const SceneView& scene_;
     const CameraView& camera_;
-    LensView<float> to_film_;
+    LensView<float> to_film_;  ///< surfaces of the direct path, from the scene to the film
     const PupilTracer& tracer_;
     const PupilEntries* pupil_entries_;  ///< for a rotationally symmetric lens; otherwise null
     float front_reach_;  ///< radius of a circle that contains all points at which light enters the lens, mm

@@ -11,12 +11,14 @@ namespace REALCAM_NAMESPACE {
 struct LightGroup {
     TracedLightKind kind;
     std::vector<std::int32_t> lights;  ///< indices among the lights of their kind
-    /// For area lights: fraction of a pixel's footprint that these and similar lights fill.
-    double share = 0;
+    /// For area lights: fraction of a pixel's footprint that these and neighbouring emitters fill.
+    double filled_fraction = 0;
 };
 
-/// All points and suns, and the emitters that fill little of a pixel's footprint at their distance, because they are
-/// out of focus or smaller than the pixel. Emitters near each other, such as those of one lamp, form one group.
+/// Returns the lights whose images are worth light tracing: all point lights and suns, and the emissive triangles that
+/// fill little of a pixel's footprint at their distance, because they are out of focus or smaller than the pixel. The
+/// footprint is the region that the samples of one pixel cover. Triangles near each other, such as those of one lamp,
+/// form one group.
 std::vector<LightGroup> light_groups(const SceneView& scene, const CameraView& camera);
 
 }  // namespace REALCAM_NAMESPACE

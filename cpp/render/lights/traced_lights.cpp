@@ -15,37 +15,43 @@
 namespace realcam {
 namespace {
 
-/// Samples of a light per pixel that its light covers and per sample of that pixel.
+/// Desired number of samples of a light, for each pixel that its light covers and for each sample of that pixel.
 constexpr double kSamplesPerPixel = 6;
-constexpr std::int32_t kMostOften = 2, kLeastOften = 64;  ///< limits for pixel_samples_
-constexpr int kMostHalvings = 12;
+constexpr std::int32_t kMinPixelSamples = 2, kMaxPixelSamples = 64;  ///< limits for pixel_samples_
+/// Largest n of a sampling probability 2^-n. The table of turns has up to 2^n entries.
+constexpr int kMaxHalvings = 12;
 
-/// Exponents n of powers 2^-n that approximate these weights and whose sum is 1.
+/// Returns for each weight the exponent n of a sampling probability 2^-n, so that the probabilities approximate the
+/// weights (up to a common factor) and their sum is 1. There are at most 2^kMaxHalvings weights.
 std::vector<int> halvings_of(const std::vector<double>& weights) {
     double sum = 0;
     for (const double weight : weights) sum += weight;
     std::vector<int> halvings;
-    std::int64_t left = std::int64_t{1} << kMostHalvings;
+    std::int64_t left = std::int64_t{1} << kMaxHalvings;  // 1 less the sum of probabilities, in units of the smallest
     for (const double weight : weights) {
         const int count = static_cast<int>(std::ceil(std::log2(sum / weight)));
-        halvings.push_back(std::clamp(count, 0, kMostHalvings));
-        left -= std::int64_t{1} << (kMostHalvings - halvings.back());
+        halvings.push_back(std::clamp(count, 0, kMaxHalvings));
+        left -= std::int64_t{1} << (kMaxHalvings - halvings.back());
     }
-    const auto lacks = [&](std::size_t i) { return weights[i] * std::exp2(halvings[i]); };
-    // The sum exceeds 1 because small weights were raised to the least power: the largest weights are reduced.
+    const auto weight_over_probability = [&](std::size_t i) { return weights[i] * std::exp2(halvings[i]); };
+    // If the sum exceeds 1, because small weights were raised to the smallest probability, the probabilities that are
+    // largest for their weights are halved; if it is less, those that are smallest for their weights are doubled.
     while (left < 0) {
-        std::size_t richest = halvings.size();
+        std::size_t most_oversampled = halvings.size();
         for (std::size_t i = 0; i < halvings.size(); ++i)
-            if (halvings[i] < kMostHalvings && (richest == halvings.size() || lacks(i) < lacks(richest))) richest = i;
-        left += std::int64_t{1} << (kMostHalvings - ++halvings[richest]);
+            if (halvings[i] < kMaxHalvings && (most_oversampled == halvings.size() ||
+                                               weight_over_probability(i) < weight_over_probability(most_oversampled)))
+                most_oversampled = i;
+        left += std::int64_t{1} << (kMaxHalvings - ++halvings[most_oversampled]);
     }
     while (left > 0) {
-        std::size_t poorest = halvings.size();
+        std::size_t most_undersampled = halvings.size();
         for (std::size_t i = 0; i < halvings.size(); ++i)
-            if (std::int64_t{1} << (kMostHalvings - halvings[i]) <= left &&
-                (poorest == halvings.size() || lacks(i) > lacks(poorest)))
-                poorest = i;
-        left -= std::int64_t{1} << (kMostHalvings - halvings[poorest]--);
+            if (std::int64_t{1} << (kMaxHalvings - halvings[i]) <= left &&
+                (most_undersampled == halvings.size() ||
+                 weight_over_probability(i) > weight_over_probability(most_undersampled)))
+                most_undersampled = i;
+        left -= std::int64_t{1} << (kMaxHalvings - halvings[most_undersampled]--);
     }
     return halvings;
 }
@@ -60,42 +66,45 @@ TracedLights::TracedLights(const SceneView& scene, const CameraView& camera, con
     std::vector<std::optional<FoundLight>> found(groups.size());
     tracer.for_each(static_cast<int>(groups.size()), [&](int i) {
         const auto k = static_cast<std::size_t>(i);
-        found[k] = entries.of(groups[k]);
+        found[k] = entries.find(groups[k]);
     });
-    std::vector<std::size_t> seen;
+    std::vector<std::size_t> visible;  // indices of the groups whose light reaches the film
     for (std::size_t k = 0; k < groups.size(); ++k)
-        if (found[k]) seen.push_back(k);
-    // Sorted by the area of the film that they cover; lights beyond the largest number of turns are dropped.
-    std::stable_sort(seen.begin(), seen.end(),
+        if (found[k]) visible.push_back(k);
+    // If there are more lights than the table of turns can hold, those that cover the most pixels are traced.
+    std::stable_sort(visible.begin(), visible.end(),
                      [&](std::size_t a, std::size_t b) { return found[a]->pixels > found[b]->pixels; });
-    seen.resize(std::min<std::size_t>(seen.size(), std::size_t{1} << kMostHalvings));
-    if (seen.empty()) return;
+    visible.resize(std::min<std::size_t>(visible.size(), std::size_t{1} << kMaxHalvings));
+    if (visible.empty()) return;
 
     double covered = 0;
     std::vector<double> weights;
-    for (const std::size_t k : seen) {
+    for (const std::size_t k : visible) {
         covered += found[k]->pixels;
         weights.push_back(found[k]->pixels);
     }
     const double pixels = static_cast<double>(camera.width) * camera.height;
-    pixel_samples_ = static_cast<std::int32_t>(
-        std::clamp(std::round(pixels / (kSamplesPerPixel * covered)), double{kMostOften}, double{kLeastOften}));
+    pixel_samples_ = static_cast<std::int32_t>(std::clamp(std::round(pixels / (kSamplesPerPixel * covered)),
+                                                          double{kMinPixelSamples}, double{kMaxPixelSamples}));
     const std::vector<int> halvings = halvings_of(weights);
 
+    // Mean density of pixel samples: film area times the projected solid angle of the exit pupil
+    // (TracedLightsView::scale).
     const double radius = static_cast<double>(camera.thick.exit_pupil_radius),
                  distance = static_cast<double>(camera.thick.exit_pupil_distance);
     const double film_area =
         4 * static_cast<double>(camera.film_half_width) * static_cast<double>(camera.film_half_height);
     scale_ = static_cast<float>(film_area * std::numbers::pi * radius * radius /
                                 (radius * radius + distance * distance) / pixel_samples_);
+    // With an infinite density, the MIS weight of pixel samples is 0.
     if (tracing == LightTracing::alone) scale_ = std::numeric_limits<float>::infinity();
     light_of_area_.assign(static_cast<std::size_t>(scene.area_count), -1);
     share_of_area_.assign(light_of_area_.size(), 0);
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-        TracedLight light = found[seen[i]]->light;
+    for (std::size_t i = 0; i < visible.size(); ++i) {
+        TracedLight light = found[visible[i]]->light;
         light.halvings = halvings[i];
         light.probability = std::exp2(static_cast<float>(-halvings[i]));
-        add(scene, groups[seen[i]], light);
+        add(scene, groups[visible[i]], light);
     }
     set_turns();
 }
@@ -118,7 +127,9 @@ void TracedLights::add(const SceneView& scene, const LightGroup& group, TracedLi
         }
         triangles_.insert(triangles_.end(), group.lights.begin(), group.lights.end());
     } else {
-        cdfs_.push_back(0);  // keeps each light's table at the index of its first triangle plus its own index
+        // One entry for each other light: a light's table then begins at the index of its first triangle plus that of
+        // the light.
+        cdfs_.push_back(0);
     }
     lights_.push_back(light);
 }
@@ -127,15 +138,17 @@ void TracedLights::set_turns() {
     std::vector<std::int32_t> order(lights_.size());
     std::iota(order.begin(), order.end(), 0);
     const auto halvings = [&](std::int32_t light) { return lights_[static_cast<std::size_t>(light)].halvings; };
-    // Each light's interval then begins at a multiple of its length, and the last bits of a sample's index select it.
+    // The table maps a sample's index to its light. In bit-reversed order, each light owns an interval of indices;
+    // sorted by length, each interval begins at a multiple of its length, so that the samples of the light are equally
+    // spaced.
     std::stable_sort(order.begin(), order.end(),
                      [&](std::int32_t a, std::int32_t b) { return halvings(a) < halvings(b); });
     const int bits = halvings(order.back());
     turns_.resize(std::size_t{1} << bits);
-    std::uint32_t at = 0;
+    std::uint32_t reversed = 0;
     for (const std::int32_t light : order)
-        for (std::uint32_t end = at + (1u << (bits - halvings(light))); at < end; ++at)
-            turns_[bits > 0 ? reverse_bits(at) >> (32 - bits) : 0] = light;
+        for (std::uint32_t end = reversed + (1u << (bits - halvings(light))); reversed < end; ++reversed)
+            turns_[bits > 0 ? reverse_bits(reversed) >> (32 - bits) : 0] = light;
 }
 
 TracedLightsView TracedLights::view() const {
@@ -158,11 +171,11 @@ double least_lamp_share(const SceneView& scene, const CameraView& camera, const 
     const double cosine = std::cos(setup.widest_angle());
     double least = 1;
     for (const LightGroup& group : light_groups(scene, camera)) {
-        if (group.kind != TracedLightKind::triangles) continue;  // no ray hits the others
+        if (group.kind != TracedLightKind::triangles) continue;  // rays cannot hit points and suns
         const Vec3f offset = scene.areas[group.lights.front()].corner - front;
         const bool is_in_view =
             static_cast<double>(-dot(offset, camera.backward)) > cosine * static_cast<double>(length(offset));
-        if (is_in_view || camera.key_count > 0) least = std::min(least, group.share);
+        if (is_in_view || camera.key_count > 0) least = std::min(least, group.filled_fraction);
     }
     return least;
 }

@@ -9,9 +9,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Sets the density against which the light that a ray hits straight from the lens is weighted, if that light is also
-/// sampled from the lights (splat_ghosts.hpp): as if the ray's direction had been sampled with this density at the
-/// front vertex.
+/// Sets the density for the MIS weight of an emitter that a camera ray hits, if that emitter is also sampled from the
+/// lights (splat_ghosts.hpp): as if the ray's direction had been sampled at the front vertex with this density, per
+/// steradian. `lane`: also the slot, because the path has just started.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void set_first_density(const CameraView& camera, float density, int lane, PathState<N>& path) {
     Vec3f front = front_vertex(camera, camera.front_vertex_m);
@@ -25,7 +25,7 @@ REALCAM_INLINE void set_first_density(const CameraView& camera, float density, i
     path.receiver_normal.set(lane, {0, 0, 0});
 }
 
-/// Starts paths with the rays that have left the lens.
+/// Initialises the state and the results of paths with the rays that have left the lens; other paths are inactive.
 template <int N>
 REALCAM_INLINE void start_paths(const CameraRays<N>& camera_rays, PathState<N>& path, PathResults<N>& results) {
     REALCAM_LANES
@@ -46,26 +46,30 @@ REALCAM_INLINE void start_paths(const CameraRays<N>& camera_rays, PathState<N>& 
     }
 }
 
+/// Stage of a render kernel, for measuring its time: camera rays through the lens, ray-scene intersection, and all
+/// other work.
 enum class RenderStage { lens, scene, other };
 
 namespace advance_path_detail {
 
-/// First bounce with Russian roulette, which ends dim paths at random and increases the weight of the others.
+/// First bounce with Russian roulette.
 inline constexpr int kFirstRoulette = 3;
 
-/// Ends a path with the probability 1 - q, where q is the ratio of its throughput to its initial weight.
+/// Russian roulette: continues the path in a slot with the probability q, and then divides its throughput by q. q is
+/// the largest channel of its throughput over its initial weight, at most 1.
 template <int N>
-REALCAM_INLINE void play_roulette(const SampleBlock<N>& block, int bounce, int slot, PathState<N>& path) {
+REALCAM_INLINE void apply_roulette(const SampleBlock<N>& block, int bounce, int slot, PathState<N>& path) {
     const Color throughput = path.throughput[slot];
-    const float kept = largest(throughput) / path.weight[slot];
-    if (!(kept < 1.0f)) return;
+    const float survival = largest(throughput) / path.weight[slot];
+    if (!(survival < 1.0f)) return;
     const float u = block.random(path.lane(slot), dimension::roulette + static_cast<std::uint32_t>(bounce)).x;
-    if (u < kept)
-        path.throughput.set(slot, (1.0f / kept) * throughput);
+    if (u < survival)
+        path.throughput.set(slot, (1.0f / survival) * throughput);
     else
         path.rays.active[slot] = 0;
 }
 
+/// Returns true if any ray is to be traced.
 template <int N>
 REALCAM_INLINE bool any_active(const SceneRays<N>& rays) {
     std::int32_t any = 0;
@@ -73,37 +77,39 @@ REALCAM_INLINE bool any_active(const SceneRays<N>& rays) {
     return any != 0;
 }
 
-/// Traces shadow rays, and adds the light of those that are not occluded. `darkens(i)`: true if path i ends when its
-/// light is occluded.
-template <SceneKind scene_kind, int N, class SceneT, class Probe, class Darkens>
-REALCAM_INLINE void add_light(const ShadowRays<N>& light, SceneT&& scene, Probe&& probe, const Darkens& darkens,
-                              PathState<N>& path, PathResults<N>& results) {
+/// Traces one shadow ray per path, and adds the contributions of those that are not occluded. `is_shadow_catcher(i)`:
+/// true if the path in slot i ends if its shadow ray is occluded. `scene`, `probe`: as in advance_paths.
+template <SceneKind scene_kind, int N, class SceneT, class Probe, class IsShadowCatcher>
+REALCAM_INLINE void add_unoccluded_light(const ShadowRays<N>& light, SceneT&& scene, Probe&& probe,
+                                         const IsShadowCatcher& is_shadow_catcher, PathState<N>& path,
+                                         PathResults<N>& results) {
     if (!any_active(light.rays)) return;
-    Lanes<std::int32_t, N> hidden;
+    Lanes<std::int32_t, N> occluded;
     probe.enter(RenderStage::scene);
-    scene.occluded(light.rays, hidden);
+    scene.occluded(light.rays, occluded);
     probe.enter(RenderStage::other);
     const int slots = path.slots();
     for (int i = 0; i < slots; ++i) {
         const int lane = path.lane(i);
-        if (light.rays.active[i] & !hidden[i])
-            results.irradiance.set(lane, results.irradiance[lane] + light.unshadowed[i]);
+        if (light.rays.active[i] & !occluded[i])
+            results.irradiance.set(lane, results.irradiance[lane] + light.unoccluded[i]);
         if constexpr (scene_kind == SceneKind::any) {
-            if (darkens(i) & light.rays.active[i] & hidden[i]) path.rays.active[i] = 0;
+            if (is_shadow_catcher(i) & light.rays.active[i] & occluded[i]) path.rays.active[i] = 0;
         }
     }
 }
 
-/// Sets the properties of the shadow ray for light sample `number` that only scenes of SceneKind::any need.
+/// Sets time and random bits of the shadow ray for light sample `number`, which only scenes of SceneKind::any need.
 template <SceneKind scene_kind, int N>
-REALCAM_INLINE void number_shadow_ray(const PathState<N>& path, int slot, int number, SceneRays<N>& rays) {
+REALCAM_INLINE void set_time_and_number(const PathState<N>& path, int slot, int number, SceneRays<N>& rays) {
     if constexpr (scene_kind == SceneKind::any) {
         rays.number[slot] = shadow_ray_number(hash32(path.rays.number[slot] + static_cast<std::uint32_t>(number)));
         rays.time[slot] = path.rays.time[slot];
     }
 }
 
-/// Scatters the path of a GPU's thread, which has room for one shadow ray: each is traced as soon as it has been set.
+/// Scatters the path of a GPU's thread, which has registers for one shadow ray: each ray is traced right after it is
+/// set.
 template <SceneKind scene_kind, class SceneT, class Probe>
 REALCAM_INLINE void scatter_one(const SceneView& view, const PathSettings& settings, const SampleBlock<1>& block,
                                 int bounce, const Surfaces<1>& surfaces, SceneT&& scene, Probe&& probe,
@@ -116,11 +122,11 @@ REALCAM_INLINE void scatter_one(const SceneView& view, const PathSettings& setti
         PathResults<1>& results;
 
         REALCAM_INLINE ShadowRays<1>& operator[](int number) {
-            number_shadow_ray<scene_kind>(path, 0, number, ray.rays);
+            set_time_and_number<scene_kind>(path, 0, number, ray.rays);
             return ray;
         }
-        REALCAM_INLINE void trace(int, bool darkens) {
-            add_light<scene_kind>(ray, scene, probe, [=](int) { return darkens; }, path, results);
+        REALCAM_INLINE void trace(int, bool is_shadow_catcher) {
+            add_unoccluded_light<scene_kind>(ray, scene, probe, [=](int) { return is_shadow_catcher; }, path, results);
         }
     } shadow{{}, scene, probe, path, results};
     const std::uint32_t first_dimension = dimension::of_bounce(bounce);
@@ -130,29 +136,31 @@ REALCAM_INLINE void scatter_one(const SceneView& view, const PathSettings& setti
                            block.bits(0, first_dimension), path, shadow);
 }
 
-/// Scatters the paths of many lanes, and then traces all their shadow rays.
+/// Scatters the paths of a block on a CPU, and then traces all their shadow rays together.
 template <SceneKind scene_kind, int N, class SurfacesT, class SceneT, class Probe>
 REALCAM_INLINE void scatter_many(const SceneView& view, const PathSettings& settings, const SampleBlock<N>& block,
                                  int bounce, SurfacesT& surfaces, SceneT&& scene, Probe&& probe, PathState<N>& path,
                                  PathResults<N>& results) {
     LightRays<N> shadow;
-    std::int32_t darkens[N];  // surfaces that show only shadows
+    std::int32_t is_shadow_catcher[N];  // read for SceneKind::any only
     for (int k = 0; k < kLightSampleCount; ++k) {
         REALCAM_LANES
-        for (int i = 0; i < N; ++i) shadow[k].rays.active[i] = 0;  // unused slots, too
-        for (int i = 0; i < path.count; ++i) number_shadow_ray<scene_kind>(path, i, k, shadow[k].rays);
+        for (int i = 0; i < N; ++i) shadow[k].rays.active[i] = 0;  // including unused slots
+        for (int i = 0; i < path.count; ++i) set_time_and_number<scene_kind>(path, i, k, shadow[k].rays);
     }
     if constexpr (scene_kind == SceneKind::plain)
         scatter_plain_paths(view, settings, block, bounce, surfaces, path, shadow);
     else
-        scatter_glossy_paths<scene_kind>(view, settings, block, bounce, surfaces, path, shadow, darkens);
+        scatter_glossy_paths<scene_kind>(view, settings, block, bounce, surfaces, path, shadow, is_shadow_catcher);
     for (const ShadowRays<N>& light : shadow.rays)
-        add_light<scene_kind>(light, scene, probe, [&](int i) { return darkens[i]; }, path, results);
+        add_unoccluded_light<scene_kind>(
+            light, scene, probe, [&](int i) { return is_shadow_catcher[i]; }, path, results);
 }
 
 }  // namespace advance_path_detail
 
-/// Generates the rays from the film through the lens, and starts their paths.
+/// Generates the camera rays of a block of samples, from the film through the lens, and starts their paths. Sets all of
+/// `path` and `results` that later bounces read.
 template <LensKind lens_kind, SceneKind scene_kind, Effects effects = kNoEffects, int N>
 REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N>& block,
                                    PathStateWith<N, effects>& path, PathResults<N>& results) {
@@ -162,8 +170,8 @@ REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N
     generate_rays_with<lens_kind, effects>(camera, block, film, path.wavelengths, camera_rays);
     if constexpr (scene_kind == SceneKind::any) expose_rays(camera, block, camera_rays, path.rays.time);
     start_paths(camera_rays, path, results);
-    // Diffraction at the edges of the aperture spreads the light of lamps. Such rays have the density with which pixel
-    // samples and splats find that light equally well.
+    // Rays that the edges of the aperture diffract also find lamps. Starbursts find the same light by splatting; with
+    // splat_density, the MIS weights are equal where both methods sample equally well.
     if constexpr (effects.diffraction) {
         REALCAM_LANES
         for (int i = 0; i < N; ++i)
@@ -172,9 +180,10 @@ REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N
     }
 }
 
-/// Traces each path to its next surface, adds the light that reaches it there, and scatters it. Returns true if any
-/// path continues. `SceneT` provides intersect(rays, hits) and occluded(rays, hidden) for N rays; `Probe` provides
-/// enter(RenderStage), which costs nothing if the time is not measured.
+/// Traces each path to its next surface, adds the emitted and the direct light there, and samples its next ray. Returns
+/// true if any path continues. `bounce`: 0 for camera rays. `SceneT` provides intersect(rays, hits) and occluded(rays,
+/// occluded), which sets a 1 for each occluded ray, for N rays; `Probe` provides enter(RenderStage), which measures the
+/// time of the stages or does nothing.
 template <SceneKind scene_kind, int N, class SceneT, class Probe>
 REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                      const SampleBlock<N>& block, int bounce, SceneT&& scene, Probe&& probe,
@@ -191,7 +200,8 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     scene.intersect(path.rays, hits);
     probe.enter(RenderStage::other);
     shade_hits<scene_kind>(view, camera, settings, block, bounce, hits, path, results, surfaces);
-    if (path.count == 0) return false;  // on a GPU this frees the registers of what only continuing paths need
+    // On a GPU this return frees the registers of the values that only continuing paths need.
+    if (path.count == 0) return false;
     const int slots = path.slots();
     if constexpr (N == 1)
         scatter_one<scene_kind>(view, settings, block, bounce, surfaces, scene, probe, path, results);
@@ -199,7 +209,7 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
         scatter_many<scene_kind>(view, settings, block, bounce, surfaces, scene, probe, path, results);
     if (bounce >= kFirstRoulette) {
         for (int i = 0; i < slots; ++i)
-            if (path.rays.active[i]) play_roulette(block, bounce, i, path);
+            if (path.rays.active[i]) apply_roulette(block, bounce, i, path);
     }
     return any_active(path.rays);
 }

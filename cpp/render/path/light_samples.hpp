@@ -7,7 +7,12 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// sample_environment_image for many random numbers at once, vectorised.
+// Light sampling for all paths of a block at once: the functions of scene/lights/light.hpp for many receivers,
+// vectorised for area lights and the environment. The arithmetic is that of the functions for one receiver, which each
+// comment names.
+
+/// Samples pixels of the environment map for many pairs of random numbers, as sample_environment_image does for one.
+/// operator[] returns the light sample of a slot.
 template <int N>
 class EnvironmentSamples {
 public:
@@ -34,13 +39,12 @@ private:
     ColorLanes<N> radiance_;
 };
 
-// sample_light for all paths of a block at once, vectorised for area lights and the environment.
-
+/// Light samples, one LightSample per slot.
 template <int N>
 struct LightSamples {
     Vec3Lanes<float, N> direction;
     ColorLanes<N> irradiance;
-    Lanes<float, N> distance, reach, pdf;
+    Lanes<float, N> distance, reach, pdf;  ///< all members: see LightSample
 
     REALCAM_INLINE LightSample operator[](int lane) const {
         return {direction[lane], distance[lane], reach[lane], irradiance[lane], pdf[lane]};
@@ -56,6 +60,7 @@ struct LightSamples {
 
 namespace light_samples_detail {
 
+/// Returns a if the condition holds, else b, without branches.
 REALCAM_INLINE LightSample select(bool condition, const LightSample& a, const LightSample& b) {
     using realcam::select;
     return {select(condition, a.direction, b.direction), select(condition, a.distance, b.distance),
@@ -63,22 +68,28 @@ REALCAM_INLINE LightSample select(bool condition, const LightSample& a, const Li
             select(condition, a.pdf, b.pdf)};
 }
 
-enum class Source : std::int32_t { none, area, sky, other };
+/// Kind of the light that was picked for a slot, by the code that samples it.
+enum class Source : std::int32_t {
+    none,   ///< no light
+    area,   ///< area light, in vector code
+    sky,    ///< environment, in vector code
+    other,  ///< another light, sampled one by one (PickedLights::others)
+};
 
-/// The lights that were picked for the lanes.
+/// Lights that were picked for the slots.
 template <int N>
 struct PickedLights {
     Lanes<Source, N> source;
-    Lanes<float, N> probability;
-    Vec2Lanes<float, N> u;  ///< random numbers left over after the choice
-    LightSamples<N> others;
-    // For area lights:
+    Lanes<float, N> probability;  ///< probability of picking the light
+    Vec2Lanes<float, N> u;  ///< random numbers in [0, 1) that remain after the choice, for the point on the light
+    LightSamples<N> others;  ///< complete samples of Source::other
+    // The AreaLight of Source::area:
     Vec3Lanes<float, N> corner, edge_u, edge_v, normal;
     ColorLanes<N> radiance;
     Lanes<float, N> area, margin;
     Lanes<std::int32_t, N> is_two_sided;
     Lanes<std::uint32_t, N> triangle, instance;
-    bool any_area = false, any_sky = false, any_other = false;
+    bool any_area = false, any_sky = false, any_other = false;  ///< true if any slot has this source
 
     REALCAM_INLINE void set_area(int lane, const AreaLight& light) {
         source[lane] = Source::area;
@@ -111,14 +122,15 @@ struct PickedLights {
 
 }  // namespace light_samples_detail
 
-/// light_kinds of all surfaces, in lanes.
+/// Probabilities of the kinds of light at all surfaces of a block, as light_kinds computes them for one. operator[]
+/// returns those of a slot. `count`: number of surfaces.
 template <int N>
 class LightKindsLanes {
 public:
     template <class SurfacesT>
     REALCAM_INLINE LightKindsLanes(const SceneView& scene, SkySampling sky, const SurfacesT& surfaces, int count) {
         const int slots = whole_vectors<N>(count);
-        Lanes<float, N> local = {}, suns = {};
+        Lanes<float, N> local = {}, suns = {};  // importances of point and area lights, and of suns
         if (count_light_kinds(scene) > 1) {
             if (scene.light_node_count > 0) {
                 const LightNode all = scene.light_nodes[0];
@@ -147,70 +159,70 @@ public:
     }
 
 private:
-    Lanes<float, N> even_, scale_, local_, environment_;
-    Lanes<std::int32_t, N> is_apart_;
+    Lanes<float, N> even_, scale_, local_, environment_;  ///< numbers of LightKinds
+    Lanes<std::int32_t, N> is_apart_;  ///< LightKinds::environment_is_apart
 };
 
 namespace light_samples_detail {
 
-/// Points on the area lights that were picked for the lanes.
+/// Points on the area lights that were picked for the slots.
 template <int N>
 struct LightPoints {
-    Vec2Lanes<float, N> at;  ///< barycentric
-    Lanes<std::int32_t, N> is_near;
-    Lanes<float, N> solid_angle;  ///< for near lights
+    Vec2Lanes<float, N> barycentric;
+    Lanes<std::int32_t, N> is_near;  ///< 1 if the triangle is so near that it is sampled by solid angle (is_near)
+    Lanes<float, N> solid_angle;  ///< solid angle of the triangle, sr; only if is_near
 };
 
-/// Samples points as sample_area_light does.
+/// Samples the points as sample_area does for one light.
 template <int N, class SurfacesT>
 REALCAM_INLINE void sample_light_points(const PickedLights<N>& picked, const SurfacesT& surfaces, int slots,
-                                        LightPoints<N>& drawn) {
+                                        LightPoints<N>& points) {
     using realcam::select;
     std::int32_t any_near = 0;
     REALCAM_LANES
     for (int i = 0; i < slots; ++i) {
         const bool is_near =
             (picked.source[i] == Source::area) & realcam::is_near(picked.area_light(i), surfaces.position[i]);
-        drawn.is_near[i] = is_near ? 1 : 0;
-        any_near |= drawn.is_near[i];
-        drawn.at.set(i, sample_triangle(picked.u[i]));
+        points.is_near[i] = is_near ? 1 : 0;
+        any_near |= points.is_near[i];
+        points.barycentric.set(i, sample_triangle(picked.u[i]));
     }
     if (any_near == 0) return;
     REALCAM_LANES
     for (int i = 0; i < slots; ++i) {
         const SolidAngleSample near = sample_near(picked.area_light(i), surfaces.position[i], picked.u[i]);
-        const bool is_near = drawn.is_near[i] != 0;
-        const Vec2f far = drawn.at[i];
-        drawn.at.set(i, {select(is_near, near.at.x, far.x), select(is_near, near.at.y, far.y)});
-        drawn.solid_angle[i] = near.solid_angle;
+        const bool is_near = points.is_near[i] != 0;
+        const Vec2f far_point = points.barycentric[i];
+        points.barycentric.set(i, {select(is_near, near.at.x, far_point.x), select(is_near, near.at.y, far_point.y)});
+        points.solid_angle[i] = near.solid_angle;
     }
 }
 
-/// True if indices into the environment's tables fit 32 bits.
+/// Returns true if 32-bit indices reach all entries of the environment map's tables, as EnvironmentSamples requires.
 REALCAM_INLINE bool fits_lanes(const EnvironmentView& environment) {
     return !environment.pixels || std::int64_t{environment.height} * (environment.width + 1) < (1 << 30);
 }
 
-/// Chooses among the point and area lights, for all surfaces.
+/// Chooses a point or area light for each surface. `seed(slot)`: random bits.
 template <int N, class SurfacesT, class Seeds>
 REALCAM_INLINE void choose_local_lights(const SceneView& scene, const LightKindsLanes<N>& kinds,
                                         const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
                                         const Seeds& seed, LightChoices<N>& chosen) {
     const int slots = whole_vectors<N>(path.count);
-    Lanes<float, N> rest;
+    Lanes<float, N> remaining_u;
     Lanes<std::uint32_t, N> seeds;
     for (int i = 0; i < slots; ++i) seeds[i] = seed(i);
     REALCAM_LANES
-    for (int i = 0; i < slots; ++i) rest[i] = left_over(u[i].x, kinds[i].local_probability);
+    for (int i = 0; i < slots; ++i) remaining_u[i] = left_over(u[i].x, kinds[i].local_probability);
     choose_lights<N>(
         scene,
         [&](int i) -> LightReceiver {
             return {surfaces.position[i], surfaces.normal[i], 0.0f, surfaces.lobe(i, -path.rays.direction[i])};
         },
-        rest, seeds, slots, chosen);
+        remaining_u, seeds, slots, chosen);
 }
 
-/// Picks lights as pick_light does for one receiver.
+/// Picks a light for light sample `number` (0 or 1, below kLightSampleCount) of each path, as pick_light does for one.
 template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
 REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>& kinds, int number,
                                 const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
@@ -237,8 +249,9 @@ REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>
 
 }  // namespace light_samples_detail
 
-/// Draws light sample `number` for each path whose surface is_in_lanes(slot). Others get no light, with their normal
-/// as the direction. `u`, `seed(slot)`: as in sample_light.
+/// Draws light sample `number` (0 or 1, below kLightSampleCount) for each path whose surface is stored in lanes
+/// (SurfacesT::is_in_lanes); other paths get a black sample with the surface normal as its direction. `u`,
+/// `seed(slot)`: random numbers and random bits of each path, as in sample_light.
 template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
 REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<N>& kinds, int number,
                                   const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
@@ -248,26 +261,28 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<
     pick_lights<scene_kind>(scene, kinds, number, surfaces, path, u, seed, picked);
     const int count = path.count, slots = whole_vectors<N>(count);
     if (picked.any_area) {
-        LightPoints<N> drawn;
-        sample_light_points(picked, surfaces, slots, drawn);
+        LightPoints<N> points;
+        sample_light_points(picked, surfaces, slots, points);
         if constexpr (scene_kind != SceneKind::plain) {
             for (int i = 0; i < count; ++i)
                 if (picked.source[i] == Source::area)
                     picked.radiance.set(
-                        i, emitted_radiance<scene_kind>(scene, picked.area_light(i), drawn.at[i].x, drawn.at[i].y));
+                        i, emitted_radiance<scene_kind>(scene, picked.area_light(i), points.barycentric[i].x,
+                                                        points.barycentric[i].y));
         }
         REALCAM_LANES
         for (int i = 0; i < slots; ++i) {
             const AreaLight light = picked.area_light(i);
-            const DirectionToLight to_light =
-                direction_to_light(light, shines_on_both_sides<scene_kind>(light), surfaces.position[i], drawn.at[i]);
-            const bool is_near = drawn.is_near[i] != 0;
-            const float scale = select(is_near, drawn.solid_angle[i], 1.0f / to_light.pdf);
+            const DirectionToLight to_light = direction_to_light(light, shines_on_both_sides<scene_kind>(light),
+                                                                 surfaces.position[i], points.barycentric[i]);
+            const bool is_near = points.is_near[i] != 0;
+            // The inverse of the density.
+            const float scale = select(is_near, points.solid_angle[i], 1.0f / to_light.pdf);
             samples.direction.set(i, to_light.direction);
             samples.irradiance.set(i, select(to_light.cosine > 0.0f, scale, 0.0f) * picked.radiance[i]);
             samples.distance[i] = to_light.distance;
             samples.reach[i] = to_light.reach;
-            samples.pdf[i] = select(is_near, 1.0f / drawn.solid_angle[i], to_light.pdf);
+            samples.pdf[i] = select(is_near, 1.0f / points.solid_angle[i], to_light.pdf);
         }
     }
     if (picked.any_sky) {
@@ -293,15 +308,15 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<
         for (int i = 0; i < count; ++i)
             if (picked.source[i] == Source::other) samples.set(i, picked.others[i]);
     }
-    // Lanes without a light hold uninitialised memory, and a BSDF indexes tables by the direction.
+    // Slots without a light hold uninitialised memory, and a BSDF indexes tables by the direction.
     REALCAM_LANES
     for (int i = 0; i < slots; ++i) {
         const float probability = picked.probability[i];
-        const bool is_lit = picked.source[i] != Source::none;
-        samples.direction.set(i, select(is_lit, samples.direction[i], surfaces.normal[i]));
+        const bool is_picked = picked.source[i] != Source::none;
+        samples.direction.set(i, select(is_picked, samples.direction[i], surfaces.normal[i]));
         samples.irradiance.set(
-            i, select(is_lit, bounded_light((1.0f / probability) * samples.irradiance[i]), Color{0, 0, 0}));
-        samples.pdf[i] = select(is_lit, probability * samples.pdf[i], kDelta);
+            i, select(is_picked, bounded_light((1.0f / probability) * samples.irradiance[i]), Color{0, 0, 0}));
+        samples.pdf[i] = select(is_picked, probability * samples.pdf[i], kDelta);
     }
 }
 

@@ -7,17 +7,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Kind of scene for which the kernels of a picture are compiled.
-inline SceneKind kind_of(const SceneView& scene, const CameraView& camera) {
+/// Returns the SceneKind of the kernels that render a picture: that of the scene, or `any` if the camera moves.
+inline SceneKind kernel_scene_kind(const SceneView& scene, const CameraView& camera) {
     return camera.key_count > 0 ? SceneKind::any : scene.kind;
 }
 
-/// Kind of lens for which the kernels are compiled. Methods that only serve for comparison, pixel pupils and the
-/// polynomial model, are left out of the code for plain lenses.
-inline LensKind lens_kind_of(const CameraView& camera) {
+/// Returns the LensKind of the kernels that render a picture. Kernels for plain (spherical) lenses omit the methods
+/// that serve only for comparison, pixel pupils and the polynomial model; with these the kernels for rotationally
+/// symmetric lenses are used.
+inline LensKind kernel_lens_kind(const CameraView& camera) {
     if (has_any_lens(camera)) return LensKind::any;
-    const bool compares = camera.pixel_pupils.known || camera.model == CameraModel::polynomial_lens;
-    return compares && camera.lens.kind == LensKind::plain ? LensKind::rotational : camera.lens.kind;
+    const bool is_comparison = camera.pixel_pupils.known || camera.model == CameraModel::polynomial_lens;
+    return is_comparison && camera.lens.kind == LensKind::plain ? LensKind::rotational : camera.lens.kind;
 }
 
 /// Transport of light through the scene.
@@ -26,13 +27,15 @@ enum class LightTransport : std::int32_t {
     whitted,  ///< direct light, and specular reflection and transmission (Whitted 1980)
 };
 
-/// Sampling of the images of lights that are small or out of focus (trace_lights.hpp).
+/// Method that samples the images of lights which are small or out of focus (trace_lights.hpp). Pixel samples start at
+/// the film; light samples start at the lights.
 enum class LightTracing : std::int32_t {
-    weighted,  ///< by samples of pixels and by samples from the lights, each weighted by the densities of both
-    off,       ///< by samples of pixels alone, which never hit points and suns
-    alone,     ///< by samples from the lights alone, for comparison
+    weighted,  ///< pixel samples and light samples, combined by multiple importance sampling
+    off,       ///< pixel samples only, which never hit point lights and suns
+    alone,     ///< light samples only, for comparison
 };
 
+/// Settings of the path tracer.
 struct PathSettings {
     std::int32_t max_bounces = 0;  ///< bounces after which a path ends; 0: direct light only
     LightTransport transport = LightTransport::paths;
@@ -41,9 +44,10 @@ struct PathSettings {
     constexpr bool operator==(const PathSettings&) const = default;
 };
 
-/// True if all lobes of a surface send out rays. After the last bounce, one more ray finds the light that narrow lobes
-/// show.
-REALCAM_INLINE bool goes_on(const PathSettings& settings, int bounce) {
+/// Returns true if a path continues by sampling all lobes of the surface that it hits at this bounce (0: the first
+/// surface). If false, only narrow or mirror lobes are sampled (keep_scattering_lobes in scatter_paths.hpp): the ray
+/// then finds the emitters that they reflect, which light samples would find with much noise.
+REALCAM_INLINE bool all_lobes_scatter(const PathSettings& settings, int bounce) {
     return bounce < settings.max_bounces && settings.transport == LightTransport::paths;
 }
 

@@ -9,62 +9,73 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Rays for traversal. Lanes with active 0 are skipped.
+/// Rays to be intersected with the scene, in render space.
 template <int N>
 struct SceneRays {
     Vec3Lanes<float, N> origin, direction;
     Lanes<float, N> far;  ///< end of the ray, in lengths of its direction
-    Lanes<std::int32_t, N> active;
+    Lanes<std::int32_t, N> active;  ///< 1 if the ray is traced, 0 if it is skipped and its members are undefined
     // Only for scenes of SceneKind::any:
-    Lanes<std::uint32_t, N> number;  ///< random number for the ray's decisions at holes
+    Lanes<std::uint32_t, N> number;  ///< random bits that decide at which partly opaque surfaces the ray stops
+                                     ///< (stops_ray in opacity.hpp)
     Lanes<float, N> time;  ///< fraction of the exposure (see instance_at.hpp)
 };
 
-/// Random number of the ray that a sample sends out at a bounce; bounce 0 is the camera's ray.
+/// Returns SceneRays::number for the ray of a sample at a bounce; bounce 0 is the camera ray.
 template <int N>
 REALCAM_INLINE std::uint32_t ray_number(const SampleBlock<N>& block, int lane, int bounce) {
     return path_ray_number(block.bits(lane, ~static_cast<std::uint32_t>(bounce)));
 }
 
-/// Results of a block of paths. Irradiance per sample: its mean over a pixel's samples is the pixel's irradiance.
+/// Results of a block of paths, one lane per sample.
 template <int N>
 struct PathResults {
-    ColorLanes<N> irradiance;
+    ColorLanes<N> irradiance;  ///< lux; the mean over a pixel's samples is the irradiance of the pixel
     Lanes<float, N> depth;  ///< depth of the first hit along the camera's axis from the film, metres; negative behind
                             ///< the film; kFarAway: no hit
     Lanes<float, N> weight;  ///< weight of the sample in the exposure (CameraRays)
-    Lanes<std::int32_t, N> sampled, passed;
+    Lanes<std::int32_t, N> sampled;  ///< 1 if a ray was sent into the lens
+    Lanes<std::int32_t, N> passed;  ///< 1 if it left the lens
 };
 
-/// Contributions of a block of paths to other pixels, at the further wavelengths of their samples.
+/// Contributions of a block of paths to other pixels than their own: a sample traces one ray, which also counts at
+/// kSharedWavelengths - 1 other wavelengths, for the pixels that dispersion would bring that ray to (SampleSharing).
 template <int N>
 struct SharedResults {
     ColorLanes<N> irradiance[kSharedWavelengths - 1];
-    ColorLanes<N> white[kSharedWavelengths - 1];  ///< sums for a white scene, in units of samples
-    Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< offset from the sample's own pixel; 0: no contribution
+    ColorLanes<N> white[kSharedWavelengths - 1];  ///< irradiance if the scene were uniformly white with radiance 1 and
+                                                  ///< the sample had weight 1
+    Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< index of the other pixel in the film's array less that of
+                                                          ///< the sample's own pixel; 0: no contribution
 };
+/// Stand-ins for the members that a set of effects does not need.
 struct NothingShared {};
 struct NoExcess {};
+/// PathResults with the additional results of a set of effects.
 template <int N, Effects effects>
 struct PathResultsWith : PathResults<N> {
     [[no_unique_address]] std::conditional_t<effects.share_pixels(), SharedResults<N>, NothingShared> shared;
-    /// Weight of the passing samples in their own pixel, less one, by channel (film_control_variates.hpp).
+    /// Excess of each sample: its contribution to its own pixel by channel if the scene were white, less 1 if it passed
+    /// the lens (film_control_variates.hpp).
     [[no_unique_address]] std::conditional_t<effects.have_wavelengths(), ColorLanes<N>, NoExcess> excess;
 };
 
-/// Paths on their way from the film into the scene: the next ray of each, and the state of the path up to it. At each
-/// surface the paths that continue move to the first slots.
+/// State of a block of paths that are traced from the film into the scene: the next ray of each path, and what the path
+/// has accumulated before that ray. A lane is the fixed index of a sample in its block; a slot is the index of a path
+/// in these arrays. At each surface the continuing paths move to the first slots.
 template <int N>
 struct PathState {
     int count = N;  ///< slots in use; some of their paths may have ended since
     SceneRays<N> rays;
     ColorLanes<N> throughput;  ///< irradiance on the film per unit of radiance along the ray
     Lanes<float, N> weight;  ///< initial throughput of the path
-    Lanes<float, N> pdf;  ///< density with which the ray's direction was sampled, per steradian
-    Vec3Lanes<float, N> receiver_position, receiver_normal;  ///< at the surface that the ray left (LightReceiver)
-    Vec3Lanes<float, N> receiver_to_eye;  ///< its LightLobe; unused for SceneKind::plain
-    Lanes<float, N> receiver_alpha, receiver_share;
-    Lanes<SkySampling, N> receiver_sky;  ///< sampling of the environment there; for SceneKind::any only
+    Lanes<float, N> pdf;  ///< density with which the ray's direction was sampled, per steradian; kFromFilm for camera
+                          ///< rays, kDelta after a mirror
+    // The LightReceiver at the surface from which the ray starts, for the density of light samples there:
+    Vec3Lanes<float, N> receiver_position, receiver_normal;
+    Vec3Lanes<float, N> receiver_to_eye;  ///< LightLobe::to_eye; the lobe is unused for SceneKind::plain
+    Lanes<float, N> receiver_alpha, receiver_share;  ///< LightLobe::alpha and LightLobe::share
+    Lanes<SkySampling, N> receiver_sky;  ///< sampling of the environment there; set for SceneKind::any only
     ColorLanes<N> absorption;  ///< absorption of the medium around the ray, per metre
 
     REALCAM_INLINE PathState() {
@@ -99,7 +110,7 @@ struct PathState {
             if constexpr (scene_kind == SceneKind::any) {
                 rays.time[to] = rays.time[from];
                 rays.number[to] = rays.number[from];
-                // Needed if the ray continues through a surface that shows only shadows:
+                // Needed if the surface is a shadow catcher, through which the ray continues:
                 pdf[to] = pdf[from];
                 receiver_position.set(to, receiver_position[from]);
                 receiver_normal.set(to, receiver_normal[from]);
@@ -113,21 +124,21 @@ private:
     Lanes<std::int32_t, N> lane_;
 };
 
-/// Time at which a path goes through the scene, as a fraction of the exposure.
+/// Returns the time of a path as a fraction of the exposure; 0 if nothing moves (other kinds than SceneKind::any).
 template <SceneKind scene_kind, int N>
-REALCAM_INLINE float time_of(const PathState<N>& path, int lane) {
-    if constexpr (scene_kind == SceneKind::any) return path.rays.time[lane];
+REALCAM_INLINE float time_of(const PathState<N>& path, int slot) {
+    if constexpr (scene_kind == SceneKind::any) return path.rays.time[slot];
     return 0.0f;
 }
 
-/// State of paths with these effects.
+/// PathState with the wavelengths of the samples, if the effects need them.
 template <int N, Effects effects>
 struct PathStateWith : PathState<N> {
     WavelengthsWith<N, effects> wavelengths;
 };
 
-/// Random numbers of one dimension of a bounce, for each path. A GPU's thread draws them on demand, because it has no
-/// registers to keep them.
+/// Pair of random numbers of one dimension of the sequence for each path; operator[] takes a slot. A GPU's thread
+/// computes it on demand (PathNumbers<1>), because it has no registers to store it.
 template <int N>
 class PathNumbers {
 public:
@@ -147,7 +158,7 @@ public:
         : block_(block), dimension_(dimension) {}
 
     REALCAM_INLINE Vec2f operator[](int) const {
-        // By named constants, so that no code is generated for the other dimensions of the joint sequence.
+        // With constant dimensions the compiler omits the code for the other dimensions of the joint sequence.
         if (dimension_ == kFirstLight) return block_.random(0, kFirstLight);
         if (dimension_ == kFirstScatter) return block_.random(0, kFirstScatter);
         return sample_2d(block_.stream[0], block_.sample[0], dimension_);

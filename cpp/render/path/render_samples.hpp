@@ -3,8 +3,11 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Converts the light of a sample into the film's colours, in equal parts at the wavelengths that the sample counts
-/// for. `coated`: each part is weighted with the lens's transmittance.
+/// Converts the irradiance of the sample in a lane, which was traced at one wavelength, into colours of the film. A
+/// sample counts in equal parts at several wavelengths (hero wavelength sampling, Wilkie et al. 2014): at its own and
+/// at those of the steps whose bit in `of.shares` is set. A part whose ray dispersion brings to another pixel goes to
+/// results.shared. Also sets the excess of the sample (PathResultsWith). `coated`: each part is weighted with the
+/// lens's transmittance at its wavelength.
 template <bool coated, int N, Effects effects>
 REALCAM_INLINE void count_wavelengths(const DispersionView& view, const SampleWavelengths<N>& of, int lane,
                                       PathResultsWith<N, effects>& results) {
@@ -48,10 +51,11 @@ REALCAM_INLINE void count_wavelengths(const DispersionView& view, const SampleWa
     results.excess.set(lane, excess);
 }
 
-/// Takes one block of samples along the whole path: from the film, through the lens, to the scene and its lights.
+/// Renders a block of N samples by path tracing: from the film, through the lens, to the scene and its lights. `block`:
+/// pixel and sample index of each lane; `results`: receives the irradiance of each lane.
 ///
-/// `lens_kind`: any, or the lens's own; `scene_kind`: any, or the scene's own. SceneT and Probe as in advance_paths. A
-/// GPU thread runs this with N = 1.
+/// `lens_kind`, `scene_kind`: `any`, or those of the lens and the scene (path_settings.hpp). `effects`: effects that
+/// are simulated. `scene`, `probe`: see advance_paths. A GPU thread runs this with N = 1.
 template <LensKind lens_kind, SceneKind scene_kind, Effects effects = kNoEffects, int N, class SceneT, class Probe>
 REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                       const SampleBlock<N>& block, SceneT&& scene, Probe&& probe,

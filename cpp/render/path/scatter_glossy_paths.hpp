@@ -6,14 +6,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Surfaces that the paths of a block have hit in a scene that is not plain. Surfaces that GlossyBsdf describes are
-/// stored in lanes; others are stored point by point, and their lanes are black.
+/// Surfaces that the paths of a block have hit in a scene with glossy materials, one per slot. Surfaces that GlossyBsdf
+/// describes (is_glossy) are stored in lanes, in the members named as those of SurfacePoint and GlossySurface. All
+/// other surfaces are stored one by one in `others`, and are black in lanes.
 template <int N>
 struct GlossySurfaces {
     Vec3Lanes<float, N> position, geometric_normal, normal;
     ColorLanes<N> base, f0;
     Lanes<float, N> self_offset, f90, metallic, alpha;
-    Lanes<std::int32_t, N> is_glossy;
+    Lanes<std::int32_t, N> is_glossy;  ///< 1 if the surface is stored in lanes
     Lanes<float, N> lobe_share;  ///< LightLobe::share; set by find_lobes
     Surfaces<N> others;
 
@@ -41,12 +42,13 @@ struct GlossySurfaces {
     REALCAM_INLINE GlossySurface glossy(int slot) const {
         return {base[slot], f0[slot], f90[slot], metallic[slot], alpha[slot]};
     }
-    /// Computes the lobes once, because each step down the tree of lights reads them.
+    /// Computes lobe_share once, because each step down the light tree reads it.
     REALCAM_INLINE void find_lobes(const PathState<N>& path) {
         const int slots = whole_vectors<N>(path.count);
         REALCAM_LANES
         for (int i = 0; i < slots; ++i) lobe_share[i] = light_lobe(glossy(i), normal[i], -path.rays.direction[i]).share;
     }
+    /// Returns the lobe by which lights are chosen; `to_eye`: unit vector against the arriving ray.
     REALCAM_INLINE LightLobe lobe(int slot, Vec3f to_eye) const { return {to_eye, alpha[slot], lobe_share[slot]}; }
     REALCAM_INLINE bool is_in_lanes(int slot) const { return is_glossy[slot] != 0; }
 
@@ -62,36 +64,39 @@ private:
 
 namespace scatter_glossy_paths_detail {
 
-/// Lobes of a surface that send out a ray, and the probability of each. The flags are numbers, 1 or 0, because gcc does
-/// not vectorise a loop with branches on conditions, even if these are the same for all lanes.
-struct GlossySenders {
-    float diffuse_sends, specular_sends;
+/// Lobes that are sampled for the next ray, and the probability of each. The flags are numbers, 1 or 0, because gcc
+/// does not vectorise a loop with branches on conditions, even if these are the same for all lanes.
+struct SampledLobes {
+    float samples_diffuse, samples_specular;
 
-    /// After the last bounce only the specular lobe sends out a ray. With LightTransport::whitted it does not either,
+    /// After the last bounce only the specular lobe is sampled. With LightTransport::whitted it is not sampled either,
     /// because it is not a mirror.
-    REALCAM_INLINE GlossySenders(const PathSettings& settings, int bounce)
-        : diffuse_sends(goes_on(settings, bounce) ? 1.0f : 0.0f),
-          specular_sends(settings.transport == LightTransport::whitted ? 0.0f : 1.0f) {}
+    REALCAM_INLINE SampledLobes(const PathSettings& settings, int bounce)
+        : samples_diffuse(all_lobes_scatter(settings, bounce) ? 1.0f : 0.0f),
+          samples_specular(settings.transport == LightTransport::whitted ? 0.0f : 1.0f) {}
 
-    struct Shares {
+    struct Probabilities {
         float diffuse, specular;
 
+        /// Density of a direction, per steradian, whose values of the two lobes are `v`.
         REALCAM_INLINE float pdf_of(const GlossyBsdf::Value& v) const {
             return diffuse * v.diffuse_pdf + specular * v.specular_pdf;
         }
     };
-    REALCAM_INLINE Shares shares_of(const GlossyBsdf& bsdf) const {
-        const float diffuse = diffuse_sends * bsdf.diffuse_albedo(), specular = specular_sends * bsdf.specular_albedo(),
-                    albedo = diffuse + specular;
+    REALCAM_INLINE Probabilities probabilities_of(const GlossyBsdf& bsdf) const {
+        const float diffuse = samples_diffuse * bsdf.diffuse_albedo(),
+                    specular = samples_specular * bsdf.specular_albedo(), albedo = diffuse + specular;
         return {select(albedo > 0.0f, diffuse / albedo, 0.0f), select(albedo > 0.0f, specular / albedo, 0.0f)};
     }
 };
 
-/// Light for surfaces that GlossyBsdf describes, as light_path computes it for one path. Others get no light.
+/// Direct light for surfaces that GlossyBsdf describes: set_direct_light for all slots. Other surfaces get black
+/// contributions.
 template <int N>
-REALCAM_INLINE void light_glossy(const PathSettings& settings, int bounce, const GlossySurfaces<N>& surfaces,
-                                 const LightSamples<N>& lights, const PathState<N>& path, ShadowRays<N>& shadow) {
-    const GlossySenders senders(settings, bounce);
+REALCAM_INLINE void set_direct_light_glossy(const PathSettings& settings, int bounce, const GlossySurfaces<N>& surfaces,
+                                            const LightSamples<N>& lights, const PathState<N>& path,
+                                            ShadowRays<N>& shadow) {
+    const SampledLobes sampled_lobes(settings, bounce);
     const float clamp = bounce > 0 ? settings.clamp : 0.0f;
     const int slots = whole_vectors<N>(path.count);
     REALCAM_LANES
@@ -100,38 +105,40 @@ REALCAM_INLINE void light_glossy(const PathSettings& settings, int bounce, const
         const GlossyBsdf bsdf(surfaces.glossy(i), surfaces.normal[i], spawn.geometric_normal, -path.rays.direction[i]);
         const LightSample light = lights[i];
         const GlossyBsdf::Value to_light = bsdf.eval(light.direction);
-        const float weight = mis_weight(light.pdf, senders.shares_of(bsdf).pdf_of(to_light));
-        const float diffuse_weight = senders.diffuse_sends * weight + (1.0f - senders.diffuse_sends);
+        const float weight = mis_weight(light.pdf, sampled_lobes.probabilities_of(bsdf).pdf_of(to_light));
+        // A lobe that is not sampled receives light from light samples alone, with a weight of 1.
+        const float diffuse_weight = sampled_lobes.samples_diffuse * weight + (1.0f - sampled_lobes.samples_diffuse);
         const Color scattered = diffuse_weight * to_light.diffuse + weight * to_light.specular;
-        const Color seen = scattered * path.throughput[i] * light.irradiance;
+        const Color contribution = scattered * path.throughput[i] * light.irradiance;
         const bool is_used = surfaces.is_glossy[i] != 0;
-        shadow.set(i, spawn, light, clamped(select(is_used, seen, Color{0, 0, 0}), clamp * path.weight[i]));
+        shadow.set(i, spawn, light, clamped(select(is_used, contribution, Color{0, 0, 0}), clamp * path.weight[i]));
     }
 }
 
-/// Next rays for these surfaces, as scatter_path computes them for one path. Others keep their paths.
+/// Samples the next rays at these surfaces: scatter_path for all slots. The paths at other surfaces are unchanged, but
+/// inactive until scatter_at continues them.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, SkySampling sky,
                                    const GlossySurfaces<N>& surfaces, const PathNumbers<N>& u, PathState<N>& path) {
-    const GlossySenders senders(settings, bounce);
+    const SampledLobes sampled_lobes(settings, bounce);
     const int slots = whole_vectors<N>(path.count);
     REALCAM_LANES
     for (int i = 0; i < slots; ++i) {
         const RaySpawnPoint spawn = surfaces[i];
         const Vec3f normal = surfaces.normal[i], arriving = path.rays.direction[i];
         const GlossyBsdf bsdf(surfaces.glossy(i), normal, spawn.geometric_normal, -arriving);
-        const GlossySenders::Shares shares = senders.shares_of(bsdf);
+        const SampledLobes::Probabilities probabilities = sampled_lobes.probabilities_of(bsdf);
         const Color throughput = path.throughput[i];
         const bool is_used = surfaces.is_glossy[i] != 0;
         Vec2f number = u[i];
-        const bool is_diffuse = number.x < shares.diffuse;
-        number.x = left_over(select(is_diffuse, number.x, number.x - shares.diffuse),
-                             select(is_diffuse, shares.diffuse, shares.specular));
+        const bool is_diffuse = number.x < probabilities.diffuse;
+        number.x = left_over(select(is_diffuse, number.x, number.x - probabilities.diffuse),
+                             select(is_diffuse, probabilities.diffuse, probabilities.specular));
         const Vec3f direction = bsdf.sample(is_diffuse, number);
         const GlossyBsdf::Value value = bsdf.eval(direction);
-        const float pdf = shares.pdf_of(value);
-        // A diffuse lobe that sends out no ray is left out.
-        const Color sum = senders.diffuse_sends * value.diffuse + value.specular;
+        const float pdf = probabilities.pdf_of(value);
+        // A diffuse lobe that is not sampled does not count.
+        const Color sum = sampled_lobes.samples_diffuse * value.diffuse + value.specular;
         const Color next = select(pdf > 0.0f, (1.0f / pdf) * throughput * sum, Color{0, 0, 0});
         path.rays.active[i] = (is_used & !is_black(next)) ? 1 : 0;
         path.throughput.set(i, select(is_used, next, throughput));
@@ -147,36 +154,39 @@ REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, Sky
 
 }  // namespace scatter_glossy_paths_detail
 
-/// scatter_paths for many lanes, vectorised for surfaces that GlossyBsdf describes.
+/// scatter_at for all paths of a block, vectorised for surfaces that GlossyBsdf describes. `shadow`: receives the
+/// shadow rays, one for each light sample. `is_shadow_catcher[i]`: set to 1 if path i ends where its shadow ray is
+/// occluded.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void scatter_glossy_paths(const SceneView& view, const PathSettings& settings,
                                          const SampleBlock<N>& block, int bounce, GlossySurfaces<N>& surfaces,
-                                         PathState<N>& path, LightRays<N>& shadow, std::int32_t (&darkens)[N]) {
+                                         PathState<N>& path, LightRays<N>& shadow,
+                                         std::int32_t (&is_shadow_catcher)[N]) {
     using namespace scatter_glossy_paths_detail;
     const std::uint32_t first_dimension = dimension::of_bounce(bounce);
     const PathNumbers<N> light_numbers(block, path, first_dimension + dimension::light),
         scatter_numbers(block, path, first_dimension + dimension::scatter);
     const auto seed = [&](int i) { return block.bits(path.lane(i), first_dimension); };
-    // Unused lanes of the last vector are looked up in tables, too, and must hold valid numbers.
+    // Unused lanes of the last vector are also used as table indices, and must hold valid numbers.
     for (int i = path.count; i < whole_vectors<N>(path.count); ++i) {
         surfaces.copy(0, i);
         path.rays.direction.set(i, path.rays.direction[0]);
     }
     surfaces.find_lobes(path);
-    const SkySampling sky = sky_sampling(view, goes_on(settings, bounce), bounce == 0);
+    const SkySampling sky = sky_sampling(view, all_lobes_scatter(settings, bounce), bounce == 0);
     const LightKindsLanes<N> kinds(view, sky, surfaces, path.count);
     for (int k = 0; k < kLightSampleCount; ++k) {
         if (!has_light(view, sky, k)) continue;
         LightSamples<N> lights;
         sample_lights<scene_kind>(view, kinds, k, surfaces, path, light_numbers, seed, lights);
-        light_glossy(settings, bounce, surfaces, lights, path, shadow[k]);
+        set_direct_light_glossy(settings, bounce, surfaces, lights, path, shadow[k]);
     }
     scatter_glossy<scene_kind>(settings, bounce, sky, surfaces, scatter_numbers, path);
     for (int i = 0; i < path.count; ++i) {
-        darkens[i] = 0;
+        is_shadow_catcher[i] = 0;
         if (!surfaces.is_glossy[i])
-            darkens[i] = scatter_at<scene_kind>(view, settings, bounce, i, surfaces.others.points[i], light_numbers,
-                                                scatter_numbers, seed(i), path, shadow);
+            is_shadow_catcher[i] = scatter_at<scene_kind>(view, settings, bounce, i, surfaces.others.points[i],
+                                                          light_numbers, scatter_numbers, seed(i), path, shadow);
     }
 }
 

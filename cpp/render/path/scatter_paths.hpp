@@ -5,36 +5,42 @@
 #include "path_state.hpp"
 #include "shade_hits.hpp"
 
+// Next-event estimation (direct light sampling) and BSDF sampling of one path at one surface.
+
 namespace REALCAM_NAMESPACE {
 
-/// Start of a ray, offset to the side of its direction, so that it does not hit its own surface again.
+/// Returns the start of a ray that leaves a surface: the point is offset along the normal, to the side of the ray's
+/// direction, so that the ray does not hit its own surface again.
 REALCAM_INLINE Vec3f ray_start(const RaySpawnPoint& spawn, Vec3f direction) {
     const float offset = select(dot(spawn.geometric_normal, direction) < 0.0f, -spawn.self_offset, spawn.self_offset);
     return spawn.position + offset * spawn.geometric_normal;
 }
 
-/// Rays that test the visibility of lights.
+/// Shadow rays with the contributions that they test.
 template <int N>
 struct ShadowRays {
     SceneRays<N> rays;
-    ColorLanes<N> unshadowed;  ///< contribution to the film if nothing occludes the light
+    ColorLanes<N> unoccluded;  ///< irradiance on the film if nothing occludes the light
 
-    /// `seen`: contribution to the film if nothing occludes the light. Without branches, so that it is vectorised.
-    REALCAM_INLINE void set(int lane, const RaySpawnPoint& spawn, const LightSample& light, Color seen) {
+    /// Sets the shadow ray of a slot from a surface to a light; inactive if `contribution`, the irradiance on the film
+    /// if nothing occludes the light, is black. Without branches, so that loops over slots are vectorised.
+    REALCAM_INLINE void set(int slot, const RaySpawnPoint& spawn, const LightSample& light, Color contribution) {
         const Vec3f start = ray_start(spawn, light.direction);
-        // For a near light the ray's direction is the vector from its start to the light, so that the distance is 1:
-        // the light may be as near as the offset. The ray stops short of the light, which is itself in the scene.
-        const bool is_near = light.distance < kFarAway;
+        // For a light at a finite distance, the ray's direction is the vector from its start to the light and the ray
+        // ends at LightSample::reach < 1, short of the light's own geometry. Normalising instead would fail for a light
+        // that is as near as the offset of the start.
+        const bool is_finite = light.distance < kFarAway;
         const Vec3f offset = light.distance * light.direction - (start - spawn.position);
-        rays.origin.set(lane, start);
-        rays.direction.set(lane, select(is_near, offset, light.direction));
-        rays.far[lane] = select(is_near, select(light.reach > 0.0f, light.reach, 0.0f), kFarAway);
-        rays.active[lane] = is_black(seen) ? 0 : 1;
-        unshadowed.set(lane, seen);
+        rays.origin.set(slot, start);
+        rays.direction.set(slot, select(is_finite, offset, light.direction));
+        rays.far[slot] = select(is_finite, select(light.reach > 0.0f, light.reach, 0.0f), kFarAway);
+        rays.active[slot] = is_black(contribution) ? 0 : 1;
+        unoccluded.set(slot, contribution);
     }
 };
 
-/// Shadow rays of many paths, to be traced together: one for each light sample.
+/// Shadow rays of many paths, one ShadowRays for each light sample. The caller traces all of them once they are set, so
+/// that trace() does nothing here; for a GPU it traces the ray at once (scatter_one in advance_path.hpp).
 template <int N>
 struct LightRays {
     ShadowRays<N> rays[kLightSampleCount];
@@ -43,64 +49,73 @@ struct LightRays {
     REALCAM_INLINE void trace(int, bool) {}
 };
 
-/// Restricts a BSDF to the lobes that send out a ray, if not all do.
+/// Removes from a BSDF the lobes that are not sampled for the next ray if all_lobes_scatter is false: with
+/// LightTransport::whitted all but mirrors, else (after the last bounce) the Lambertian lobe.
 template <class BsdfT>
-REALCAM_INLINE void keep_senders(const PathSettings& settings, BsdfT& bsdf) {
+REALCAM_INLINE void keep_scattering_lobes(const PathSettings& settings, BsdfT& bsdf) {
     if (settings.transport == LightTransport::whitted)
         bsdf.keep_mirrors();
     else
         bsdf.keep_narrow_lobes();
 }
 
-/// Sets the shadow ray and the unoccluded contribution of a light sample, for a path at a surface.
+/// Sets the shadow ray of a slot and its unoccluded contribution: the light sample, reflected by the BSDF, with its MIS
+/// weight against BSDF sampling.
 template <int N, class BsdfT>
-REALCAM_INLINE void light_path(const PathSettings& settings, int bounce, int lane, const RaySpawnPoint& spawn,
-                               BsdfT bsdf, const LightSample& light, const PathState<N>& path, ShadowRays<N>& shadow) {
+REALCAM_INLINE void set_direct_light(const PathSettings& settings, int bounce, int slot, const RaySpawnPoint& spawn,
+                                     BsdfT bsdf, const LightSample& light, const PathState<N>& path,
+                                     ShadowRays<N>& shadow) {
     const Color all_lobes = bsdf.eval(light.direction);
-    Color seen;
-    if (goes_on(settings, bounce)) {
-        seen = mis_weight(light.pdf, bsdf.pdf(light.direction)) * all_lobes;
+    Color contribution;
+    if (all_lobes_scatter(settings, bounce)) {
+        contribution = mis_weight(light.pdf, bsdf.pdf(light.direction)) * all_lobes;
     } else {
-        // Lobes that send out no ray get light from light samples alone, with a weight of 1.
-        keep_senders(settings, bsdf);
-        const Color of_senders = bsdf.eval(light.direction);
-        seen = all_lobes;
-        if (!is_black(of_senders)) seen += (mis_weight(light.pdf, bsdf.pdf(light.direction)) - 1.0f) * of_senders;
+        // Lobes that are not sampled receive light from light samples alone, with a weight of 1.
+        keep_scattering_lobes(settings, bsdf);
+        const Color from_scattering = bsdf.eval(light.direction);
+        contribution = all_lobes;
+        if (!is_black(from_scattering))
+            contribution += (mis_weight(light.pdf, bsdf.pdf(light.direction)) - 1.0f) * from_scattering;
     }
-    seen *= path.throughput[lane] * light.irradiance;
-    const float limit = bounce > 0 ? settings.clamp * path.weight[lane] : 0.0f;
-    shadow.set(lane, spawn, light, clamped(seen, limit));
+    contribution *= path.throughput[slot] * light.irradiance;
+    const float limit = bounce > 0 ? settings.clamp * path.weight[slot] : 0.0f;
+    shadow.set(slot, spawn, light, clamped(contribution, limit));
 }
 
-/// Samples the next ray of a path at a surface. `u`, `chance`: random numbers for it. Returns true if the ray is
-/// refracted through the surface.
+/// Samples the next ray of the path in a slot from the BSDF, and ends the path if its throughput becomes black. `u`:
+/// the pair of random numbers of each slot for the direction; `chance`: random number in [0, 1) that chooses the lobe.
+/// `receiver`: the surface, as stored for the MIS weight of the emitter that the ray may hit. Returns true if the ray
+/// is refracted through the surface.
 template <int N, class BsdfT>
-REALCAM_INLINE bool scatter_path(const PathSettings& settings, int bounce, int lane, const RaySpawnPoint& spawn,
+REALCAM_INLINE bool scatter_path(const PathSettings& settings, int bounce, int slot, const RaySpawnPoint& spawn,
                                  const LightReceiver& receiver, BsdfT& bsdf, const PathNumbers<N>& u, float chance,
                                  PathState<N>& path) {
-    if (!goes_on(settings, bounce)) keep_senders(settings, bsdf);
-    const BsdfSample next = bsdf.sample(u[lane], chance);
-    const Color throughput = path.throughput[lane] * next.weight;
-    path.throughput.set(lane, throughput);
-    path.rays.origin.set(lane, ray_start(spawn, next.direction));
-    path.rays.direction.set(lane, next.direction);
-    path.rays.active[lane] = !is_black(throughput);
-    path.pdf[lane] = next.pdf;
-    path.receiver_position.set(lane, receiver.position);
-    path.receiver_normal.set(lane, receiver.normal);
+    if (!all_lobes_scatter(settings, bounce)) keep_scattering_lobes(settings, bsdf);
+    const BsdfSample next = bsdf.sample(u[slot], chance);
+    const Color throughput = path.throughput[slot] * next.weight;
+    path.throughput.set(slot, throughput);
+    path.rays.origin.set(slot, ray_start(spawn, next.direction));
+    path.rays.direction.set(slot, next.direction);
+    path.rays.active[slot] = !is_black(throughput);
+    path.pdf[slot] = next.pdf;
+    path.receiver_position.set(slot, receiver.position);
+    path.receiver_normal.set(slot, receiver.normal);
     return next.refracted;
 }
 
 namespace scatter_paths_detail {
 
-/// Samples a light in proportion to its unoccluded illuminance: one of eight pairs of samples, chosen by its share of
-/// their illuminance (resampling, Talbot et al. 2005). If all of those are behind the surface, up to 64 are drawn.
-/// Black if there is no light.
+/// Number of candidates among which light_by_illuminance chooses, and the limit if all of them are behind the surface.
+inline constexpr int kLightCandidates = 8, kMaxLightCandidates = 64;
+
+/// Samples a light approximately in proportion to its unoccluded illuminance, by resampled importance sampling (Talbot
+/// et al. 2005): draws candidates, and chooses one with a probability proportional to its illuminance. Returns a black
+/// sample if no candidate illuminates the receiver. `seed`: random bits.
 template <SceneKind scene_kind>
 REALCAM_ONE_COPY LightSample light_by_illuminance(const SceneView& scene, LightReceiver receiver, std::uint32_t seed) {
     LightSample chosen{{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
     float sum = 0.0f;
-    for (int i = 0; i < 8 || (i < 64 && !(sum > 0.0f)); ++i) {
+    for (int i = 0; i < kLightCandidates || (i < kMaxLightCandidates && !(sum > 0.0f)); ++i) {
         const auto random = [&] { return unit_float(seed = hash32(seed)); };
         REALCAM_NO_UNROLL
         for (int k = 0; k < kLightSampleCount; ++k) {
@@ -118,8 +133,11 @@ REALCAM_ONE_COPY LightSample light_by_illuminance(const SceneView& scene, LightR
 
 }  // namespace scatter_paths_detail
 
-/// Scatters a path at a point. `seed`: of the sample at this bounce. `shadow`: a LightRays, or a type with the same
-/// interface that traces each ray once it is set. Returns true if the surface shows only shadows.
+/// Continues the path in a slot at a surface point: sets the shadow rays of its light samples, and samples its next
+/// ray. `light_numbers`, `scatter_numbers`: random numbers for the two; `seed`: random bits of the sample at this
+/// bounce. `shadow`: a LightRays, or a type with the same interface whose trace() traces the ray that was set last.
+/// Returns true if the surface is a shadow catcher (Material::only_shadows): the ray then continues in its direction,
+/// and the path ends if the shadow ray is occluded.
 template <SceneKind scene_kind, int N, class LightRaysT>
 REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settings, int bounce, int slot,
                                const SurfacePoint& point, const PathNumbers<N>& light_numbers,
@@ -130,8 +148,8 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     const float time = time_of<scene_kind>(path, slot);
     if constexpr (scene_kind == SceneKind::any) {
         if (point.material->only_shadows) {
-            // The background is visible to the extent that the light here is not occluded. The ray keeps its direction,
-            // and therefore its density.
+            // The background is visible with the probability that the light here is not occluded. The ray keeps its
+            // direction, and therefore its stored density and receiver.
             const LightSample light =
                 light_by_illuminance<scene_kind>(view, {point.position, point.normal, time}, seed);
             path.rays.origin.set(slot, ray_start(point, direction));
@@ -145,13 +163,13 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     auto bsdf = make_bsdf<scene_kind>(point, -direction);
     LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}, time};
     if constexpr (scene_kind != SceneKind::plain) receiver.lobe = light_lobe(point, -direction);
-    const SkySampling sky = sky_sampling(view, goes_on(settings, bounce), bounce == 0);
+    const SkySampling sky = sky_sampling(view, all_lobes_scatter(settings, bounce), bounce == 0);
     // Unrolled code would overflow the instruction cache of a GPU.
     REALCAM_NO_UNROLL
     for (int k = 0; k < kLightSampleCount; ++k) {
         if (!has_light(view, sky, k)) continue;
         const LightSample light = sample_light<scene_kind>(view, sky, receiver, k, light_numbers[slot], seed);
-        light_path(settings, bounce, slot, point, bsdf, light, path, shadow[k]);
+        set_direct_light(settings, bounce, slot, point, bsdf, light, path, shadow[k]);
         shadow.trace(k, false);
     }
     const bool refracted =

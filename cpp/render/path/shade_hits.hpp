@@ -4,7 +4,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Surfaces that the paths of a block have hit.
+/// Surfaces that the paths of a block have hit, one SurfacePoint per slot. All surface types of this folder have the
+/// same set() and, for vector code, position, normal, lobe() and is_in_lanes().
 template <int N>
 struct Surfaces {
     SurfacePoint points[N];
@@ -12,12 +13,12 @@ struct Surfaces {
     REALCAM_INLINE void set(int slot, const SurfacePoint& point) { points[slot] = point; }
 };
 
-/// Surfaces of a plain scene, in lanes.
+/// Surfaces of a plain scene, stored in lanes: only the members of SurfacePoint that Lambert and Phong lobes need.
 template <int N>
 struct PlainSurfaces {
     Vec3Lanes<float, N> position, geometric_normal, normal;
     ColorLanes<N> diffuse, phong;
-    Lanes<float, N> self_offset, shininess;
+    Lanes<float, N> self_offset, shininess;  ///< see SurfacePoint and Material
     bool has_phong = false;  ///< true if any surface has a Phong lobe
 
     REALCAM_INLINE void set(int slot, const SurfacePoint& point) {
@@ -33,39 +34,44 @@ struct PlainSurfaces {
     REALCAM_INLINE RaySpawnPoint operator[](int slot) const {
         return {position[slot], geometric_normal[slot], self_offset[slot]};
     }
+    /// Lobe by which lights are chosen: Lambertian.
     REALCAM_INLINE LightLobe lobe(int, Vec3f) const { return {}; }
+    /// Returns true if a surface is stored in lanes.
     REALCAM_INLINE bool is_in_lanes(int) const { return true; }
 };
 
 namespace shade_hits_detail {
 
-REALCAM_INLINE Color absorbed(Color absorption, float distance) {
+/// Returns the transmittance of a medium over a distance in metres (Beer-Lambert). `absorption`: per metre.
+REALCAM_INLINE Color transmittance(Color absorption, float distance) {
     return {std::exp(-distance * absorption.r), std::exp(-distance * absorption.g), std::exp(-distance * absorption.b)};
 }
 
+/// Returns the depth of a position along the camera's axis from the film at a time, in metres.
 template <SceneKind scene_kind>
 REALCAM_INLINE float depth_at(const CameraView& camera, Vec3f position, float time) {
     if constexpr (scene_kind == SceneKind::any) return depth_from(camera_at(camera, time), position);
     return depth_from(camera, position);
 }
 
-/// Salt for the footprint's random bits, beyond the dimensions of all random numbers.
-inline constexpr std::uint32_t kFootprintSalt = 0x40000;
+/// Index of the random bits for the footprint; larger than the dimensions of all other random numbers.
+inline constexpr std::uint32_t kFootprintBits = 0x40000;
 
-/// The footprint of a ray from the film.
+/// Returns the footprint of a camera ray for texture filtering: the area of a pixel, seen from the lens, divided by the
+/// index of the sample, because the n samples of a pixel together resolve details of 1/n of its area.
 template <int N>
 REALCAM_INLINE Footprint film_footprint(const CameraView& camera, const SampleBlock<N>& block, int lane) {
     const float pixel = 2.0f * camera.film_half_width / static_cast<float>(camera.width);
-    const auto number = static_cast<float>(block.sample[lane]) + 1.0f;
+    const auto sample_count = static_cast<float>(block.sample[lane]) + 1.0f;
     const float width = pixel / camera.thin.image_distance;
-    return {width * width / number, unit_float(block.bits(lane, kFootprintSalt))};
+    return {width * width / sample_count, unit_float(block.bits(lane, kFootprintBits))};
 }
 
-/// Adds the light of an environment's image along rays that have hit nothing, and ends these. Two loops, so that memory
-/// is read for many pixels at once.
+/// Adds the radiance of an environment map along rays that have hit no surface, and ends their paths. Two loops, so
+/// that many reads from the map are in flight at once.
 template <SceneKind scene_kind, int N>
-REALCAM_INLINE void end_at_image(const SceneView& view, const PathSettings& settings, int bounce, const Hits<N>& hits,
-                                 PathState<N>& path, PathResults<N>& results) {
+REALCAM_INLINE void end_at_environment_map(const SceneView& view, const PathSettings& settings, int bounce,
+                                           const Hits<N>& hits, PathState<N>& path, PathResults<N>& results) {
     std::int32_t ending[N], count = 0;
     EnvironmentPixel pixels[N];
     for (int i = 0; i < path.count; ++i) {
@@ -84,8 +90,9 @@ REALCAM_INLINE void end_at_image(const SceneView& view, const PathSettings& sett
 
 }  // namespace shade_hits_detail
 
-/// Adds the light of hit emitters and of the environment, and sets the surface points from which paths continue.
-/// Continuing paths move to the first slots.
+/// Ends or shades each active path after its ray was traced: adds the emission of the surface or the environment that
+/// the ray has hit, attenuates the throughput by the medium, and writes the surface points of continuing paths to
+/// `surfaces`. These paths move to the first slots, and path.count becomes their number. `bounce`: 0 for camera rays.
 template <SceneKind scene_kind, int N, class SurfacesT>
 REALCAM_INLINE void shade_hits(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                const SampleBlock<N>& block, int bounce, const Hits<N>& hits, PathState<N>& path,
@@ -93,7 +100,7 @@ REALCAM_INLINE void shade_hits(const SceneView& view, const CameraView& camera, 
     using namespace shade_hits_detail;
     if constexpr (N > 1) {
         if (view.has_environment && view.environment.pixels)
-            end_at_image<scene_kind>(view, settings, bounce, hits, path, results);
+            end_at_environment_map<scene_kind>(view, settings, bounce, hits, path, results);
     }
     const int slots = path.slots();
     path.count = 0;
@@ -119,7 +126,8 @@ REALCAM_INLINE void shade_hits(const SceneView& view, const CameraView& camera, 
         if constexpr (scene_kind != SceneKind::plain) {
             const Color absorption = path.absorption[i];
             if (!is_black(absorption))
-                path.throughput.set(i, path.throughput[i] * absorbed(absorption, hit.distance * length(direction)));
+                path.throughput.set(i,
+                                    path.throughput[i] * transmittance(absorption, hit.distance * length(direction)));
         }
         if (!is_black(point.emission))
             results.irradiance.set(

@@ -12,82 +12,89 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Divides a range into passes. Pixels learn after each pass. The knowledge of a sample must not depend on the
-/// distribution of samples over threads, and therefore follows from its index alone. Each pass has its own random
-/// numbers: samples of one sequence keep their distance from each other, so that those of the first ones would predict
-/// where later ones are missing.
+/// Divides a range of samples into passes, for pixels that learn their pupils (PixelPupil): a pixel's pupil is updated
+/// after each pass, so that what a sample knows follows from its index alone and not from the distribution of samples
+/// over threads. Each pass has its own seed: the samples of one low-discrepancy sequence avoid each other, so that the
+/// first ones would predict where later ones are missing.
 std::vector<SampleRange> learning_passes(const SampleRange& range);
 
-/// Decides which pixels need more samples, and how many.
+/// Decides which pixels need more samples to reach a noise goal, and how many.
 ///
 /// The film is divided into tiles, and each tile into two halves like the squares of a chessboard. The number of
-/// samples of one half is decided by the samples of the other half. A number that depends on the samples themselves
-/// would bias their mean, because pixels that happen to miss bright things look finished. For the same reason a
-/// finished half stays finished, whatever the other one finds later. The other half may have continued because this
-/// half had bright samples; more samples would level out bright ones and never dark ones.
+/// samples of one half is decided by the samples of the other half: a number that depends on the samples themselves
+/// would bias their mean, because pixels that happen to miss bright objects seem to have little noise. For the same
+/// reason a finished half stays finished, whatever the other half finds later: the other half may have continued
+/// because this half had bright samples, and more samples would then average out bright ones only.
 ///
-/// Noise is measured by doubling: a picture of n samples and the same picture with n more differ by as much as the
-/// error of n samples. The samples of a pixel are stratified, so that in smooth regions its variance falls faster than
-/// 1 / n, like n^-p. The variance of the mean of all samples is then that of the last difference over 2^p - 1. p is
-/// estimated from the last two doublings of a tile and its neighbours if these show it with some certainty; otherwise
-/// it is 1.
+/// Noise is measured by doubling: the mean of n samples and that of 2 n samples differ by about the error of n samples.
+/// The samples of a pixel are stratified, so that in smooth regions its variance falls faster than 1 / n, like n^-p.
+/// The variance of the mean of all samples is then that of the last difference over 2^p - 1. p is estimated from the
+/// last two doublings of a tile and its neighbours if these show it with some certainty; otherwise it is 1.
 ///
-/// Light that is traced from the lights (SplattedLight) falls on the whole film, and its noise is independent of that
-/// of the pixels' samples. It is measured by the change that more of it makes. No more light is traced once this noise
-/// is small in all halves that still need samples.
+/// Splatted light (SplattedLight) falls on the whole film, and its noise is independent of that of the pixels' samples.
+/// It is measured by the change that more splatted samples make. No more light is splatted once this noise is small in
+/// all halves that still need samples.
 class AdaptiveSampling {
 public:
+    /// Approximate side of a tile, pixels.
     static constexpr int kTileSide = 16;
 
-    /// Samples per pixel at the start. Fewer would not show how noisy the pixels are; more would be too many in smooth
-    /// regions.
+    /// Returns the samples per pixel with which sampling starts. Fewer would not show how noisy the pixels are; more
+    /// would be too many in smooth regions.
     static std::int64_t first_samples(const NoiseGoal& goal) {
         return std::min(std::int64_t{8}, goal.most_samples / 2);
     }
 
-    /// `exposure`: of the picture so far, 3 per pixel, lux seconds; `samples`: per pixel; `traced`: the part of the
-    /// exposure that was traced from the lights, empty if no light is.
+    /// `width`, `height`: of the film in pixels; `iso`: for noise in 8-bit codes. `exposure`: that of the picture so
+    /// far, lux seconds, 3 per pixel; `samples`: sample count of each pixel; `traced`: the splatted part of the
+    /// exposure, empty if no light is splatted.
     AdaptiveSampling(int width, int height, const NoiseGoal& goal, double iso, std::span<const float> exposure,
                      const std::vector<std::int64_t>& samples, std::span<const float> traced = {});
 
-    /// Additional samples for each pixel; all 0 once finished. `most`: approximate limit on their sum over all pixels.
-    std::vector<std::uint32_t> next(double most);
+    /// Returns the number of additional samples for each pixel; all 0 once finished. `max_total`: approximate limit on
+    /// their sum over all pixels.
+    std::vector<std::uint32_t> next(double max_total);
 
-    /// True if light is to be traced along with these samples, in proportion to the largest number of samples of a
+    /// True if splatted light is to be taken with these samples, in proportion to the largest number of them in a
     /// pixel.
     bool traces_lights() const { return traces_lights_; }
 
-    /// Adds the picture after these samples. `traced` is read only if traces_lights().
+    /// Updates the estimates of the noise after the samples of next() were taken. `exposure`, `traced`: of the picture
+    /// with these samples, as in the constructor; `traced` is read only if traces_lights(). `counts`: the result of
+    /// next().
     void add(std::span<const float> exposure, const std::vector<std::uint32_t>& counts,
              std::span<const float> traced = {});
 
+    /// Returns the noise of the noisiest half, and whether the goal is reached.
     ReachedNoise reached() const;
 
-    /// Approximate number of samples, over all pixels, that the goal still requires.
+    /// Returns the approximate number of samples, over all pixels, that the goal still requires.
     double left() const;
 
 private:
-    /// Largest decay p that few doublings can establish.
-    static constexpr double kMostDecay = 1.25;
-    /// Largest variance of traced light with which no more light is traced, as a fraction of the goal's variance.
-    static constexpr double kTracedShare = 0.2;
+    /// Largest decay p that is used: two doublings cannot establish a larger one.
+    static constexpr double kMaxDecay = 1.25;
+    /// Variance of splatted light, as a fraction of the goal's variance, below which no more light is splatted.
+    static constexpr double kMaxTracedFraction = 0.2;
 
-    /// Pixels of a tile whose number of samples is decided together.
+    /// Half of a tile. Its pixels have the same number of samples. Values are as in value_of.
     struct Half {
-        double pixels = 0, samples = 0;
+        double pixels = 0, samples = 0;  ///< number of pixels; samples per pixel
         bool is_finished = false;
-        double mean = 0;
-        double doublings = 0;
+        double mean = 0;  ///< mean value
+        double doublings = 0;  ///< how often the number of samples was doubled
         double square = 0, square_before = 0;  ///< mean square change by the last doubling and by the one before
-        double doubled_to = 0;  ///< samples after the last doubling
-        double traced = 0;  ///< variance of the light that was traced; infinite until it is measured
+        double doubled_to = 0;  ///< samples per pixel after the last doubling
+        double traced = 0;  ///< variance due to splatted light; infinite until it is measured
 
+        /// Counts `taken` more samples per pixel, which changed the values by the mean square `change`.
         void add(double change, double taken);
     };
 
+    /// Returns the number of tiles along a side of the film.
     static int tiles_of(int pixels) { return std::max(1, (pixels + kTileSide / 2) / kTileSide); }
 
-    /// Calls f(pixel, half) for each pixel.
+    /// Calls f(pixel index, index of its half) for each pixel.
     template <class F>
     void for_pixels(F&& f) const {
         for (int y = 0; y < height_; ++y) {
@@ -98,38 +105,44 @@ private:
         }
     }
 
+    /// Returns the index in halves_ of half 0 or 1 of the tile in a row and column of tiles.
     std::size_t half_at(int row, int column, std::size_t half) const;
 
+    /// Returns the index of the other half of a tile.
     std::size_t other(std::size_t half) const;
 
+    /// Converts an exposure to the unit in which noise is measured: sensor values (1 is white), or 8-bit codes.
     float value_of(float exposure) const;
 
-    /// Decay p of a half, from the halves of the same colour in its tile and the adjacent tiles.
+    /// Returns the decay p of a half, estimated from the halves of the same chessboard colour in its tile and the
+    /// adjacent tiles; at least 1.
     double decay_of(std::size_t half) const;
 
-    double variance_wanted(const Half& half) const;
+    /// Returns the variance of a pixel's mean at which the goal is reached.
+    double goal_variance(const Half& half) const;
 
-    /// Variance of a pixel's mean over that of the goal.
-    double excess_of(std::size_t half) const;
+    /// Returns the variance of a pixel's mean over that of the goal.
+    double variance_ratio(std::size_t half) const;
 
-    /// Fraction of the goal that is aimed for: measurements are uncertain, and stopping where one is small stops too
-    /// early.
+    /// Fraction of the goal's variance that is aimed for: measurements are uncertain, and sampling ends where one
+    /// happens to be small.
     static constexpr double kMargin = 0.8;
 
-    /// Expected samples per pixel with which the goal is reached; infinite before the first doubling.
-    double end_of(std::size_t half) const;
+    /// Returns the expected samples per pixel with which the goal is reached; infinite before the first doubling.
+    double samples_at_goal(std::size_t half) const;
 
-    /// Additional samples per pixel: as many as the half has, or fewer if these are expected to suffice.
-    double next_of(const Half& half, double end) const;
+    /// Returns the additional samples per pixel of a half: as many as it has, or fewer if these are expected to
+    /// suffice. `end`: samples_at_goal of the other half.
+    double additional_samples(const Half& half, double end) const;
 
     int width_, height_;
     NoiseGoal goal_;
     double iso_;
-    int across_, down_;
+    int across_, down_;  ///< number of tiles along the width and the height
     std::vector<Half> halves_;  ///< two per tile, tile by tile
-    std::vector<float> values_;
-    std::vector<float> traced_;
-    double traced_samples_;  ///< samples per pixel to which the traced light belongs
+    std::vector<float> values_;  ///< value of each channel of each pixel, with all samples so far
+    std::vector<float> traced_;  ///< splatted part of the exposure at the last measurement
+    double traced_samples_;  ///< samples per pixel to which that splatted light belongs
     bool traces_lights_ = true;
 };
 

@@ -10,27 +10,29 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Work of a backend before the next picture.
+/// Part of the scene that a backend has to prepare before the next picture.
 enum class SceneChange {
-    none,
-    transforms,  ///< RenderSpaceScene::move suffices
-    all,     ///< another scene, or a camera too far from the position of the last
+    none,        ///< no part: the scene is the same
+    transforms,  ///< instance transforms: RenderSpaceScene::move suffices
+    all,         ///< everything: another scene, or the camera is too far from the origin of render space
 };
 
-/// Compares a scene with that of the last picture. `last`: null before the first.
+/// Compares the scene and camera of the next picture with the scene of the last one. `last`: null before the first
+/// picture.
 SceneChange scene_change(const RenderSpaceScene* last, const Assembly& scene, const Camera& camera);
 
-/// One picture of a session while the device works on it. May outlive the session.
+/// Handle of a live frame: a picture of a session, developed to 8 bits, which the device may still be working on. May
+/// outlive the session.
 class LiveFrame {
 public:
     virtual ~LiveFrame() = default;
-    virtual int width() const = 0;
-    virtual int height() const = 0;
-    virtual std::int64_t samples() const = 0;  ///< per pixel, accumulated up to this frame
-    /// Waits until the frame is complete, at most for `longest`; returns true if it is. Throws DeviceError.
-    virtual bool wait_for(std::chrono::microseconds longest) const = 0;
-    /// height x width x 3, 8-bit sRGB; waits until the frame is complete. Throws DeviceError, and Cancelled if the
-    /// frame was stopped before its end.
+    virtual int width() const = 0;   ///< pixels
+    virtual int height() const = 0;  ///< pixels
+    virtual std::int64_t samples() const = 0;  ///< samples per pixel, accumulated up to this frame
+    /// Waits until the frame is complete, at most for `timeout`; returns true if it is complete. Throws DeviceError.
+    virtual bool wait_for(std::chrono::microseconds timeout) const = 0;
+    /// Returns the 8-bit sRGB values, height x width x 3; waits until the frame is complete. Throws DeviceError, and
+    /// Cancelled if the frame was stopped before its end.
     virtual const std::uint8_t* codes() const = 0;
 };
 

@@ -10,6 +10,7 @@
 namespace realcam {
 
 double metered_exposure(const Image& image) {
+    // Mean over the lit pixels of the luminance, limited to `limit`.
     const auto mean_up_to = [&](double limit) {
         double sum = 0, count = 0;
         for (std::size_t i = 0; i + 2 < image.exposure.size(); i += 3) {
@@ -22,8 +23,10 @@ double metered_exposure(const Image& image) {
         }
         return count > 0 ? sum / count : 0.0;
     };
+    // The limit depends on the mean: a fixed-point iteration.
+    constexpr double kMaxOverMean = 8;
     double mean = mean_up_to(1e300);
-    for (int i = 0; i < 20; ++i) mean = mean_up_to(8 * mean);
+    for (int i = 0; i < 20; ++i) mean = mean_up_to(kMaxOverMean * mean);
     return mean;
 }
 
@@ -38,9 +41,9 @@ double metered_exposure_time(Session& session, const Assembly& scene, Camera cam
     settings.spp = 16;
     settings.noise.reset();
     settings.layers = {};
-    if (settings.effects.is_automatic) {  // their choice depends on the exposure
+    if (settings.effects.is_automatic) {  // the planner's choice depends on the exposure time
         EffectChoice effects;
-        // A real camera measures the light that its lens lets through.
+        // Coatings are simulated if they are known, because they change the light that reaches the film.
         const bool is_named = (settings.effects.named & bit_of(*find_effect("coatings"))) != 0;
         effects.coatings =
             is_named ? settings.effects.coatings
@@ -51,7 +54,8 @@ double metered_exposure_time(Session& session, const Assembly& scene, Camera cam
     const double per_second = metered_exposure(take_picture(session, scene, camera, settings, progress));
     if (!(per_second > 0) || !std::isfinite(per_second))
         throw InputError("no light reaches the film, so that no exposure can be metered; specify an exposure time");
-    return 10 / (camera.iso * per_second);
+    constexpr double kMiddleGrey = 10;  // lux seconds times ISO
+    return kMiddleGrey / (camera.iso * per_second);
 }
 
 }  // namespace realcam

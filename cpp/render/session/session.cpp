@@ -6,47 +6,45 @@
 #include <limits>
 #include <utility>
 
-#include "../../optics/analysis/psf.hpp"
 #include "../layers/motion.hpp"
-#include "../layers/see_layers.hpp"
 #include "adaptive_sampling.hpp"
 #include "progress.hpp"
 
 namespace realcam {
 
 void Session::check(const Assembly& scene, const KeepGoing& keep_going) {
-    const Turn turn(mutex_, keep_going);
+    const SessionLock lock(mutex_, keep_going);
     checks_.check(scene, {}, keep_going);
 }
 
 void Session::set(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                   const KeepGoing& keep_going) {
-    const Turn turn(mutex_, keep_going);
+    const SessionLock lock(mutex_, keep_going);
     check_all(scene, camera, settings, keep_going);
     wait_for_free_frame(keep_going);
-    make_ready(scene, camera, settings, PupilStart::from_scratch, keep_going);
+    prepare_changes(scene, camera, settings, PupilStart::from_scratch, keep_going);
 }
 
 void Session::restart(const KeepGoing& keep_going) {
-    const Turn turn(mutex_, keep_going);
+    const SessionLock lock(mutex_, keep_going);
     wait_for_free_frame(keep_going);
-    give_up_samples();
+    discard_samples();
 }
 
 void Session::add(int spp, const Progress& progress) {
     validate_spp(spp);
     const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
-    const Turn turn(mutex_, keep_going);
-    if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
+    const SessionLock lock(mutex_, keep_going);
+    if (!is_ready_) throw InputError("there is no scene to photograph yet; set() sets scene, camera and settings");
     wait_for_free_frame(keep_going);
     OwnStop stop(*this);
     std::atomic<std::int64_t> done{0};
     const double total = static_cast<double>(spp) * camera_.film.width * camera_.film.height *
                          (settings_.layers.has_any(kSampledLayers) ? 2 : 1);
     const auto work = [&] {
-        expose(spp, [&](const SampleRange& range) { take(range, {}, true, done, stop); });
+        for_next_samples(spp, [&](const SampleRange& range) { take_samples(range, {}, true, done, stop); });
         mean_samples_ = stop ? mean_of(count_samples()) : mean_samples_ + spp;
-        see_what_is_missing(done, stop);
+        complete_layers(done, stop);
     };
     const auto begin = std::chrono::steady_clock::now();
     // Layers may have to catch up with more samples than these.
@@ -58,16 +56,16 @@ void Session::add(int spp, const Progress& progress) {
 ReachedNoise Session::add_until(const NoiseGoal& goal, const Progress& progress) {
     validate(goal);
     const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
-    const Turn turn(mutex_, keep_going);
-    if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
+    const SessionLock lock(mutex_, keep_going);
+    if (!is_ready_) throw InputError("there is no scene to photograph yet; set() sets scene, camera and settings");
     wait_for_frames(keep_going);
     OwnStop stop(*this);
     std::atomic<double> share{0};
     ReachedNoise reached;
     const auto work = [&] {
-        reached = take_until(goal, share, stop);
+        reached = sample_until(goal, share, stop);
         std::atomic<std::int64_t> done{0};
-        see_what_is_missing(done, stop);
+        complete_layers(done, stop);
     };
     const auto begin = std::chrono::steady_clock::now();
     run_with_progress(work, [&] { return share.load(); }, progress, stop);
@@ -79,28 +77,28 @@ ReachedNoise Session::add_until(const NoiseGoal& goal, const Progress& progress)
 std::shared_ptr<const LiveFrame> Session::shoot(const Assembly& scene, const Camera& camera,
                                                 const RenderSettings& settings, ToneCurve curve,
                                                 const KeepGoing& keep_going, std::shared_ptr<void> in_progress) {
-    const Turn turn(mutex_, keep_going);
+    const SessionLock lock(mutex_, keep_going);
     check_all(scene, camera, settings, keep_going);
     wait_for_free_frame(keep_going);
-    make_ready(scene, camera, settings, PupilStart::near_last, keep_going);
+    prepare_changes(scene, camera, settings, PupilStart::near_last, keep_going);
     std::vector<SampleRange> ranges;
-    expose(settings.spp, [&](const SampleRange& range) { ranges.push_back(range); });
+    for_next_samples(settings.spp, [&](const SampleRange& range) { ranges.push_back(range); });
     mean_samples_ += settings.spp;
     try {
-        frames_.push_back(start(ranges, curve, std::move(in_progress)));
+        frames_.push_back(start_frame(ranges, curve, std::move(in_progress)));
     } catch (...) {
-        ready_ = false;
+        is_ready_ = false;
         throw;
     }
     return frames_.back();
 }
 
-Image Session::picture(const KeepGoing& keep_going, std::int64_t most_layer_samples) {
-    return of_all_collected(keep_going, [&] {
-        if (lacks_layers(most_layer_samples)) {
+Image Session::picture(const KeepGoing& keep_going, std::int64_t max_layer_samples) {
+    return with_all_samples(keep_going, [&] {
+        if (is_missing_layers(max_layer_samples)) {
             OwnStop stop(*this);
             std::atomic<std::int64_t> done{0};
-            run_heeding([&] { see_what_is_missing(done, stop, most_layer_samples); }, keep_going, stop);
+            run_interruptibly([&] { complete_layers(done, stop, max_layer_samples); }, keep_going, stop);
             if (stop) throw Cancelled();
         }
         Image image = develop();
@@ -113,15 +111,16 @@ Image Session::picture(const KeepGoing& keep_going, std::int64_t most_layer_samp
 }
 
 template <class Work>
-void Session::take_part(std::int64_t first, int count, const Progress& progress, const std::atomic<std::int64_t>& done,
-                        std::size_t pixels, Work&& work) {
+void Session::sample_part(std::int64_t first, int count, const Progress& progress,
+                          const std::atomic<std::int64_t>& done, std::size_t pixels, Work&& work) {
     if (count < 0 || count > static_cast<int>(kSamplesPerSum))
-        throw InputError("a part of a picture has 0 to " + std::to_string(kSamplesPerSum) + " samples of each pixel");
+        throw InputError("a part of a picture must have 0 to " + std::to_string(kSamplesPerSum) +
+                         " samples of each pixel");
     if (first < 0 || first > std::numeric_limits<std::uint32_t>::max() - kSamplesPerSum)
         throw InputError("the number of a part's first sample must lie between 0 and 4294967039");
     const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
-    const Turn turn(mutex_, keep_going);
-    if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
+    const SessionLock lock(mutex_, keep_going);
+    if (!is_ready_) throw InputError("there is no scene to photograph yet; set() sets scene, camera and settings");
     wait_for_frames(keep_going);
     OwnStop stop(*this);
     const double total = static_cast<double>(count) * static_cast<double>(pixels);
@@ -136,10 +135,10 @@ RegionSums Session::expose_region(const FilmRegion& region, std::int64_t first, 
         throw InputError("expected a sample count for each pixel of the region");
     RegionSums sums;
     std::atomic<std::int64_t> done{0};
-    take_part(first, count, progress, done, region.pixels(), [&](const SampleRange& range, OwnStop& stop) {
+    sample_part(first, count, progress, done, region.pixels(), [&](const SampleRange& range, OwnStop& stop) {
         check_region(region);
         if (settings_.pupil_sampling == PupilSampling::pixel)
-            throw InputError("pixels that learn their pupils from earlier samples cannot be taken in parts");
+            throw InputError("pupil_sampling: pixel excludes pictures in parts");
         sums = take_region(region, range, {counts.empty() ? nullptr : counts.data(), 0}, done, stop);
     });
     return sums;
@@ -149,10 +148,10 @@ std::vector<LayerSum> Session::see_region(const FilmRegion& region, std::int64_t
                                           const Progress& progress) {
     std::vector<LayerSum> sums;
     std::atomic<std::int64_t> done{0};
-    take_part(first, count, progress, done, region.pixels(), [&](const SampleRange& range, OwnStop& stop) {
+    sample_part(first, count, progress, done, region.pixels(), [&](const SampleRange& range, OwnStop& stop) {
         check_region(region);
         sums.resize(region.pixels());
-        see_layers(region, range, sums, done, stop);
+        trace_layers(region, range, sums, done, stop);
     });
     return sums;
 }
@@ -160,33 +159,33 @@ std::vector<LayerSum> Session::see_region(const FilmRegion& region, std::int64_t
 std::vector<SplatFilm> Session::expose_splats(std::int64_t first, int count, const Progress& progress) {
     std::vector<SplatFilm> films;
     const std::atomic<std::int64_t> done{0};
-    take_part(first, count, progress, done, 1,
-              [&](const SampleRange& range, OwnStop& stop) { films = take_splats(range, stop); });
+    sample_part(first, count, progress, done, 1,
+                [&](const SampleRange& range, OwnStop& stop) { films = take_splats(range, stop); });
     return films;
 }
 
 Image Session::picture_of(const AccumulatedFilm& film, const KeepGoing& keep_going) {
-    const Turn turn(mutex_, keep_going);
-    if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
+    const SessionLock lock(mutex_, keep_going);
+    if (!is_ready_) throw InputError("there is no scene to photograph yet; set() sets scene, camera and settings");
     wait_for_frames(keep_going);
-    const LayerSet wanted = settings_.layers;
+    const LayerSet requested = settings_.layers;
     const auto is_of_film = [&](const auto& sums) { return sums.size() == pixel_count(); };
-    if (!is_of_film(film.pixels) || (wanted.has_any(kSampledLayers) && !is_of_film(film.layers)))
-        throw InputError("the film has other pixels or layers than the picture");
+    if (!is_of_film(film.pixels) || (requested.has_any(kSampledLayers) && !is_of_film(film.layers)))
+        throw InputError("the film must have the pixels and the layers of the picture");
     for (const SplatFilm& splats : film.splats)
         if (splats.blocks.empty() || splats.sums.size() != splats.blocks.size() * pixel_count())
-            throw InputError("the film has other pixels than the picture");
+            throw InputError("the film must have the pixels of the picture");
     const FilmView view = view_of(film.pixels, camera_.film.width, camera_.film.height, settings_, film.splats);
     LayerFilm layers{film.layers, {}};
-    if (wanted.has_any(kPixelCentreLayers)) {
-        layers.middle.resize(pixel_count());
+    if (requested.has_any(kPixelCentreLayers)) {
+        layers.pixel_centres.resize(pixel_count());
         OwnStop stop(*this);
-        run_heeding([&] { see_pixel_centre_surfaces(layers.middle, stop); }, keep_going, stop);
+        run_interruptibly([&] { trace_pixel_centres(layers.pixel_centres, stop); }, keep_going, stop);
         if (stop) throw Cancelled();
     }
     Image image = developed(view, camera_.exposure_time_s);
     add_layers(
-        image, layers, [&] { return developed_auxiliary_layers(view, wanted, camera_.exposure_time_s); },
+        image, layers, [&] { return developed_auxiliary_layers(view, requested, camera_.exposure_time_s); },
         [&] { return samples_of(film.pixels); });
     image.spp = mean_of(samples_of(film.pixels));
     image.stats = film.stats;
@@ -194,11 +193,11 @@ Image Session::picture_of(const AccumulatedFilm& film, const KeepGoing& keep_goi
 }
 
 SampleCounts Session::sample_counts(const KeepGoing& keep_going) {
-    const Turn turn(mutex_, keep_going);
+    const SessionLock lock(mutex_, keep_going);
     wait_for_frames(keep_going);
     const auto [width, height] = std::pair(camera_.film.width, camera_.film.height);
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    return {width, height, ready_ && !is_blank_ ? count_samples() : std::vector<std::int64_t>(pixels)};
+    return {width, height, is_ready_ && !is_blank_ ? count_samples() : std::vector<std::int64_t>(pixels)};
 }
 
 void Session::cancel(Collected collected) {
@@ -206,10 +205,11 @@ void Session::cancel(Collected collected) {
     const std::unique_lock lock(mutex_);
     const LowerStop lower{*this};
     wait_for_frames({});
-    if (collected == Collected::drop) give_up_samples();
+    if (collected == Collected::drop) discard_samples();
 }
 
-Session::Turn::Turn(std::timed_mutex& mutex, const KeepGoing& keep_going) : lock_(mutex, std::defer_lock) {
+Session::SessionLock::SessionLock(std::timed_mutex& mutex, const KeepGoing& keep_going)
+    : lock_(mutex, std::defer_lock) {
     while (!lock_.try_lock_for(std::chrono::milliseconds(50)))
         if (keep_going && !keep_going()) throw Cancelled();
 }
@@ -243,12 +243,13 @@ bool Session::is_same_exposure(const Assembly& scene, const Camera& camera) cons
             (camera.shutter == camera_.shutter && camera.exposure_time_s == camera_.exposure_time_s));
 }
 
-bool Session::has_sums_for(LayerSet wanted) const {
-    const LayerSet had = settings_.layers;
-    if (had.has_any(kHalfLayers) != wanted.has_any(kHalfLayers)) return false;  // these also disable light tracing
-    if (had.has(Layer::variance) == wanted.has(Layer::variance)) return true;
+bool Session::has_sums_for(LayerSet requested) const {
+    const LayerSet current = settings_.layers;
+    if (current.has_any(kHalfLayers) != requested.has_any(kHalfLayers))
+        return false;  // these also disable light tracing
+    if (current.has(Layer::variance) == requested.has(Layer::variance)) return true;
     // Squares that are no longer requested do no harm, unless the excess of wavelengths needs their memory.
-    return had.has(Layer::variance) && !settings_.effects.have_wavelengths();
+    return current.has(Layer::variance) && !settings_.effects.have_wavelengths();
 }
 
 bool Session::is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const {
@@ -260,34 +261,34 @@ bool Session::is_same_picture(const Assembly& scene, const Camera& camera, const
            settings.light_tracing == settings_.light_tracing && has_sums_for(settings.layers);
 }
 
-void Session::make_ready(const Assembly& wanted_scene, const Camera& wanted_camera, const RenderSettings& settings,
-                         PupilStart start, const KeepGoing& keep_going) {
-    const auto changed = without_left_out_motion(wanted_scene, wanted_camera, settings.effects);
-    const Assembly& scene = changed ? changed->scene : wanted_scene;
-    const Camera& camera = changed ? changed->camera : wanted_camera;
-    const bool is_same = ready_ && is_same_picture(scene, camera, settings);
-    // Frames of a camera that stands still add up to a picture, which has the pupil that any session would find.
-    const bool stands_still = is_same && start == PupilStart::near_last && !has_new_pupil();
-    if (!is_same || stands_still) {
-        ready_ = false;  // if anything fails from here on, the next call prepares everything
-        give_up_samples();
+void Session::prepare_changes(const Assembly& requested_scene, const Camera& requested_camera,
+                              const RenderSettings& settings, PupilStart start, const KeepGoing& keep_going) {
+    const auto changed = without_disabled_motion(requested_scene, requested_camera, settings.effects);
+    const Assembly& scene = changed ? changed->scene : requested_scene;
+    const Camera& camera = changed ? changed->camera : requested_camera;
+    const bool is_same = is_ready_ && is_same_picture(scene, camera, settings);
+    // Frames of a camera at rest add up to a picture, which must have the pupil that a search from scratch finds.
+    const bool is_at_rest = is_same && start == PupilStart::near_last && !has_new_pupil();
+    if (!is_same || is_at_rest) {
+        is_ready_ = false;  // if anything fails from here on, the next call prepares everything
+        discard_samples();
         scene_ = {};  // frees its memory before the next scene takes as much
         OwnStop stop(*this);
         const auto begin = std::chrono::steady_clock::now();
         prepare(scene, camera, settings, start, keep_going, stop);
         setup_seconds_ = seconds_since(begin);
         scene_ = scene;
-        ready_ = true;
+        is_ready_ = true;
     }
     camera_ = camera;
     settings_ = settings;
 }
 
-void Session::give_up_samples() {
+void Session::discard_samples() {
     samples_ = mean_samples_ = 0;
     exposing_seconds_ = 0;
     is_blank_ = true;
-    forget_layers();
+    discard_layers();
 }
 
 std::int64_t Session::mean_of(const std::vector<std::int64_t>& counts) {
@@ -296,102 +297,103 @@ std::int64_t Session::mean_of(const std::vector<std::int64_t>& counts) {
     return std::llround(sum / static_cast<double>(counts.size()));
 }
 
-void Session::forget_layers() {
+void Session::discard_layers() {
     layer_film_ = {};
     layer_samples_ = 0;
 }
 
-bool Session::lacks_layers(std::int64_t most) const {
-    return (settings_.layers.has_any(kSampledLayers) && layer_samples_ < std::min(mean_samples_, most)) ||
-           (settings_.layers.has_any(kPixelCentreLayers) && layer_film_.middle.empty());
+bool Session::is_missing_layers(std::int64_t max_samples) const {
+    return (settings_.layers.has_any(kSampledLayers) && layer_samples_ < std::min(mean_samples_, max_samples)) ||
+           (settings_.layers.has_any(kPixelCentreLayers) && layer_film_.pixel_centres.empty());
 }
 
-void Session::see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop, std::int64_t most) {
-    if (!lacks_layers(most) || stop) return;
+void Session::complete_layers(std::atomic<std::int64_t>& done, OwnStop& stop, std::int64_t max_samples) {
+    if (!is_missing_layers(max_samples) || stop) return;
     try {
-        if (settings_.layers.has_any(kPixelCentreLayers) && layer_film_.middle.empty()) {
-            layer_film_.middle.resize(pixel_count());
-            see_pixel_centre_surfaces(layer_film_.middle, stop);
+        if (settings_.layers.has_any(kPixelCentreLayers) && layer_film_.pixel_centres.empty()) {
+            layer_film_.pixel_centres.resize(pixel_count());
+            trace_pixel_centres(layer_film_.pixel_centres, stop);
         }
         if (settings_.layers.has_any(kSampledLayers)) {
             layer_film_.sums.resize(pixel_count());
-            const std::int64_t wanted = std::min(mean_samples_, most);
-            while (layer_samples_ < wanted && !stop) {
-                const SampleRange range = next_samples(settings_.seed, layer_samples_, wanted);
+            const std::int64_t end = std::min(mean_samples_, max_samples);
+            while (layer_samples_ < end && !stop) {
+                const SampleRange range = next_samples(settings_.seed, layer_samples_, end);
                 layer_samples_ += range.count;
-                see_layers(whole_film(), range, layer_film_.sums, done, stop);
+                trace_layers(whole_film(), range, layer_film_.sums, done, stop);
             }
         }
     } catch (...) {
-        forget_layers();
-        ready_ = false;
+        discard_layers();
+        is_ready_ = false;
         throw;
     }
-    if (stop) forget_layers();
+    if (stop) discard_layers();
 }
 
 template <class AuxiliaryLayers, class Counts>
 void Session::add_layers(Image& image, const LayerFilm& layers, AuxiliaryLayers&& auxiliary, Counts&& counts) {
-    const LayerSet wanted = settings_.layers;
-    if (wanted.has_any(kSampledLayers) || wanted.has_any(kPixelCentreLayers)) {
+    const LayerSet requested = settings_.layers;
+    if (requested.has_any(kSampledLayers) || requested.has_any(kPixelCentreLayers)) {
         const SurfaceIds ids(scene_);
-        const bool needs_camera = wanted.has_any({Layer::motion, Layer::position_middle});
+        const bool needs_camera = requested.has_any({Layer::motion, Layer::position_middle});
         const PlacedCamera placed = needs_camera ? placed_camera() : PlacedCamera{};
-        image.layers = developed(layers, wanted, ids, placed.origin_m);
-        if (wanted.has(Layer::motion))
-            image.layers.push_back(motion_vectors(layers.middle, scene_, camera_, placed.view, placed.origin_m));
-        if (wanted.has(Layer::object_id)) image.object_names = ids.object_names();
-        if (wanted.has(Layer::material_id)) image.material_names = ids.names_of_materials();
+        image.layers = developed_layers(layers, requested, ids, placed.origin_m);
+        if (requested.has(Layer::motion))
+            image.layers.push_back(motion_vectors(layers.pixel_centres, scene_, camera_, placed.view, placed.origin_m));
+        if (requested.has(Layer::object_id)) image.object_names = ids.object_names();
+        if (requested.has(Layer::material_id)) image.material_names = ids.material_names_by_id();
     }
-    if (wanted.has_any({Layer::variance, Layer::traced_light}) || wanted.has_any(kHalfLayers))
+    if (requested.has_any({Layer::variance, Layer::traced_light}) || requested.has_any(kHalfLayers))
         for (LayerImage& layer : auxiliary()) image.layers.push_back(std::move(layer));
-    if (wanted.has(Layer::sample_count)) {
-        constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
+    if (requested.has(Layer::sample_count)) {
+        constexpr std::int64_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
         LayerImage image_of_counts{Layer::sample_count, {}, {}};
         for (const std::int64_t count : counts())
-            image_of_counts.numbers.push_back(static_cast<std::uint32_t>(std::min(count, kMost)));
+            image_of_counts.numbers.push_back(static_cast<std::uint32_t>(std::min(count, kMaxCount)));
         image.layers.push_back(std::move(image_of_counts));
     }
     std::sort(image.layers.begin(), image.layers.end(),
               [](const LayerImage& a, const LayerImage& b) { return a.layer < b.layer; });
 }
 
-double Session::seconds_of_layers(OwnStop& stop) {
+double Session::measure_layer_seconds(OwnStop& stop) {
     if (!settings_.layers.has_any(kSampledLayers)) return 0;
     std::vector<LayerSum> unused(pixel_count());
     std::atomic<std::int64_t> done{0};
     const auto begin = std::chrono::steady_clock::now();
-    see_layers(whole_film(), {settings_.seed, 0, 1}, unused, done, stop);
+    trace_layers(whole_film(), {settings_.seed, 0, 1}, unused, done, stop);
     return seconds_since(begin);
 }
 
-ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& share, OwnStop& stop) {
+ReachedNoise Session::sample_until(const NoiseGoal& goal, std::atomic<double>& share, OwnStop& stop) {
     const auto begin = std::chrono::steady_clock::now();
     std::atomic<std::int64_t> done{0};
+    // Takes `count` samples of each pixel, or as many as `counts` says for it.
     const auto take_round = [&](std::int64_t count, const std::uint32_t* counts, bool traces_lights) {
-        std::uint32_t before = 0;
-        expose(count, [&](const SampleRange& range) {
-            take(range, {counts, before}, traces_lights, done, stop);
-            before += range.count;
+        std::uint32_t taken_before = 0;
+        for_next_samples(count, [&](const SampleRange& range) {
+            take_samples(range, {counts, taken_before}, traces_lights, done, stop);
+            taken_before += range.count;
         });
     };
     const bool is_new = is_blank_;
     noise_so_far_ = {};
     if (is_new) {
         mean_samples_ = AdaptiveSampling::first_samples(goal);
-        // Counts for each pixel, though all are equal: the two halves of a tile must be independent, so that no pixel
-        // may share its samples.
+        // Counts are given for each pixel, although they are equal, because pixels then do not share samples: the two
+        // halves of a tile must be independent.
         const std::vector<std::uint32_t> first(pixel_count(), static_cast<std::uint32_t>(mean_samples_));
         take_round(mean_samples_, first.data(), true);
     }
     AdaptiveSampling tiles(camera_.film.width, camera_.film.height, goal, camera_.iso, develop().exposure,
                            count_samples(), develop_traced());
     const auto pixels = static_cast<double>(pixel_count());
-    // Layers are computed afterwards, within the time limit of the goal.
-    const double layer_seconds = std::isfinite(goal.seconds) ? seconds_of_layers(stop) : 0;
+    // Layers are computed afterwards, and their time counts towards the limit of the goal.
+    const double layer_seconds = std::isfinite(goal.seconds) ? measure_layer_seconds(stop) : 0;
     double taken = is_new ? static_cast<double>(mean_samples_) * pixels : 0;
     while (!stop) {
-        double affordable = kInfinity;
+        double affordable = kInfinity;  // number of samples, over all pixels, for which there is time
         if (std::isfinite(goal.seconds)) {
             const double spent = seconds_since(begin);
             const double left =
@@ -400,12 +402,12 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
                                    : static_cast<double>(AdaptiveSampling::first_samples(goal)) * pixels;
         }
         const std::vector<std::uint32_t> counts = tiles.next(affordable);
-        const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
-        if (most == 0) break;
-        take_round(most, counts.data(), tiles.traces_lights());
+        const std::uint32_t max_count = *std::max_element(counts.begin(), counts.end());
+        if (max_count == 0) break;
+        take_round(max_count, counts.data(), tiles.traces_lights());
         if (stop) {
             mean_samples_ = mean_of(count_samples());
-            return noise_so_far_;  // differences of half a round are no measure of the noise
+            return noise_so_far_;  // the noise cannot be measured by the change in an incomplete round
         }
         double round = 0;
         for (const std::uint32_t count : counts) round += count;
@@ -416,7 +418,7 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
         share = std::max(share.load(), std::min(1.0, taken / (taken + tiles.left())));
     }
     noise_so_far_ = tiles.reached();
-    look_for_lamps(noise_so_far_, least_lamp_share(), std::ranges::min(count_samples()));
+    check_for_missed_lamps(noise_so_far_, least_lamp_share(), std::ranges::min(count_samples()));
     return noise_so_far_;
 }
 

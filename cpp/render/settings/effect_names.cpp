@@ -11,20 +11,22 @@ namespace realcam {
 
 namespace {
 
-/// The effect's name without a leading minus sign and without a parameter.
-std::string effect_of(const std::string& name) {
+/// Returns the effect's name in a specification such as "-coatings" or "ghosts=1e-8": without minus sign and parameter.
+std::string base_name_of(const std::string& name) {
     const std::size_t begin = name.starts_with('-') ? 1 : 0;
     return name.substr(begin, std::min(name.find('='), name.size()) - begin);
 }
 
-std::optional<double> share_from(const std::string& text) {
+/// Parses a number from 0 to 1. Returns std::nullopt for other texts.
+std::optional<double> fraction_from(const std::string& text) {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= 1)) return std::nullopt;
     return value;
 }
 
-std::string shortest(double value) {
+/// Returns the shortest text that is read back as the same number.
+std::string shortest_text(double value) {
     char text[32];
     const auto result = std::to_chars(text, text + sizeof text, value);
     return {text, result.ptr};
@@ -63,7 +65,7 @@ std::vector<std::string> names_of(const EffectChoice& effects) {
         if (effects.is_automatic ? (effects.named & bit_of(effect)) == 0 : on == effect.is_on()) continue;
         names.push_back((on ? "" : "-") + std::string(effect.name));
         if (effect.parameter && effects.*effect.parameter != EffectChoice().*effect.parameter)
-            names.back() += "=" + shortest(effects.*effect.parameter);
+            names.back() += "=" + shortest_text(effects.*effect.parameter);
     }
     return names;
 }
@@ -71,20 +73,19 @@ std::vector<std::string> names_of(const EffectChoice& effects) {
 EffectChoice effects_named(const std::vector<std::string>& names) {
     EffectChoice effects;
     for (const std::string& name : names) {
-        if (name == "none" && names.size() > 1)
-            throw InputError("\"none\" stands alone; other effects are named beside it");
+        if (name == "none" && names.size() > 1) throw InputError("\"none\" must be the only effect");
         if (name == "none") break;
         if (name == "auto") {
             effects.is_automatic = true;
             continue;
         }
         const bool on = !name.starts_with('-');
-        const std::string plain = effect_of(name);
+        const std::string plain = base_name_of(name);
         const EffectInfo* found = find_effect(plain);
         if (!found)
             throw InputError("unknown effect \"" + name.substr(0, 60) + "\"; expected some of " + effect_names());
         for (const std::string& other : names)
-            if (other != name && effect_of(other) == plain)
+            if (other != name && base_name_of(other) == plain)
                 throw InputError(
                     "the effect " + plain + " is " +
                     (on != other.starts_with('-') ? "named with two parameters" : "both named and left out"));
@@ -92,7 +93,7 @@ EffectChoice effects_named(const std::vector<std::string>& names) {
         effects.named |= bit_of(*found);
         const std::size_t equals = name.find('=');
         if (equals == std::string::npos) continue;
-        const std::optional<double> value = share_from(name.substr(equals + 1));
+        const std::optional<double> value = fraction_from(name.substr(equals + 1));
         if (!found->parameter || !on || !value)
             throw InputError("\"" + name.substr(0, 60) + "\" is no effect; " +
                              (found->parameter ? "expected a number from 0 to 1 after the equals sign"
@@ -105,7 +106,7 @@ EffectChoice effects_named(const std::vector<std::string>& names) {
 
 namespace {
 
-/// "surface 3 of " or "surfaces 1, 2 and 3 of ", followed by the lens's name. `numbers`: from 1.
+/// Returns "surface 3 of " or "surfaces 1, 2 and 3 of ", followed by the lens's name. `numbers`: counted from 1.
 std::string surfaces_text(const std::vector<int>& numbers, const LensSystem& lens) {
     std::vector<std::string> words;
     for (const int number : numbers) words.push_back(std::to_string(number));
@@ -123,11 +124,11 @@ std::vector<std::string> effect_notices(const EffectChoice& effects, const LensS
                           (one ? "does" : "do") + " not disperse light");
     }
     std::vector<int> unknown = surfaces_with_unknown_coating(lens);
-    for (int& surface : unknown) ++surface;
+    for (int& surface : unknown) ++surface;  // counted from 1
     if (any_is(effects, &EffectInfo::needs_coatings) && !unknown.empty())
-        notices.push_back(std::string(first_that(effects, &EffectInfo::needs_coatings)->name) +
-                          ": it is not known what covers " + surfaces_text(unknown, lens) +
-                          "; glass is taken as bare, and a mirror as perfect");
+        notices.push_back(std::string(first_that(effects, &EffectInfo::needs_coatings)->name) + ": the coating of " +
+                          surfaces_text(unknown, lens) +
+                          " is unknown; glass is assumed to be uncoated, and a mirror to be perfect");
     return notices;
 }
 

@@ -20,10 +20,10 @@ std::optional<GhostChoice> RenderSettings::ghost_choice() const {
 std::string spectrum_error(const RenderSettings& settings) {
     const EffectChoice& effects = settings.effects;
     if (effects.have_wavelengths() || effects.is_automatic) return "";
-    const std::string names = effects_that(&EffectInfo::has_wavelengths);
-    if (settings.illuminant) return "illuminant belongs to the effects " + names + ", which are not switched on";
-    if (settings.lens_filter && !settings.lens_filter->is_neutral())
-        return "lens_filter: a coloured filter needs one of the effects " + names + ", which are not switched on";
+    const std::string one_of = " needs one of the effects " + effects_that(&EffectInfo::has_wavelengths) +
+                               ", none of which is switched on";
+    if (settings.illuminant) return "illuminant" + one_of;
+    if (settings.lens_filter && !settings.lens_filter->is_neutral()) return "lens_filter: a coloured filter" + one_of;
     return "";
 }
 
@@ -37,12 +37,12 @@ void validate(const RenderSettings& settings) {
         throw InputError("threads must be 0 (all) or a number up to " + std::to_string(kMaxThreads));
     if (const std::string why = spectrum_error(settings); !why.empty()) throw InputError(why);
     if (settings.layers.has_any(kHalfLayers) && settings.layers.has(Layer::variance))
-        throw InputError("layers: the variance and the halves of dual pixels cannot be had of one picture");
+        throw InputError("layers: variance and dual-pixel halves exclude each other");
     if (settings.layers.has_any(kHalfLayers) && settings.light_tracing == LightTracing::alone)
-        throw InputError("layers: light that is traced from lamps alone has no halves of dual pixels");
+        throw InputError("layers: dual-pixel halves need samples of pixels; light_tracing must not be alone");
     for (const double threshold : {settings.thresholds.pixels, settings.thresholds.codes})
         if (!(threshold > 0) || !std::isfinite(threshold))
-            throw InputError("thresholds of a plan must be above 0: pixels and 8-bit codes");
+            throw InputError("the thresholds of a plan (pixels and 8-bit codes) must be above 0");
 }
 
 void validate_effects(const RenderSettings& settings, const Camera& camera) {
@@ -52,12 +52,11 @@ void validate_effects(const RenderSettings& settings, const Camera& camera) {
     if (settings.pupil_sampling != PupilSampling::outline && camera.model != CameraModel::full_lens)
         throw InputError("pupil_sampling: the camera's model must be full");
     if (settings.pupil_sampling == PupilSampling::pixel && static_cast<const Effects&>(effects) != kNoEffects)
-        throw InputError("pupil_sampling: pixels learn where light passes only without " +
-                         effects_that(&EffectInfo::is_compiled));
+        throw InputError("pupil_sampling: pixel excludes the effects " + effects_that(&EffectInfo::is_compiled));
     if (settings.layers.has_any(kHalfLayers) && camera.model == CameraModel::pinhole)
-        throw InputError("layers: the pupil of a pinhole has no halves for dual pixels; choose another model");
+        throw InputError("layers: a pinhole has no dual-pixel halves; choose another camera model");
     if (settings.layers.has_any(kHalfLayers) && settings.pupil_sampling == PupilSampling::pixel)
-        throw InputError("pupil_sampling: pixels that learn where light passes have no halves of dual pixels");
+        throw InputError("pupil_sampling: pixel excludes the layers of dual-pixel halves");
     if (const EffectInfo* effect = first_that(effects, &EffectInfo::needs_round_lens))
         require_radial_pupil(camera.lens, std::string(effect->name));
     if (camera.model == CameraModel::full_lens) return;

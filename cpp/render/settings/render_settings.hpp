@@ -16,7 +16,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Sizes from which on the planner simulates an effect (cpp/plan).
+/// Sizes from which on the planner simulates an effect (cpp/plan). An effect is simulated if it exceeds one of them.
 struct PlanThresholds {
     double pixels = 0.5;  ///< displacement or blur
     double codes = 1;     ///< change of an 8-bit code of the developed picture
@@ -24,9 +24,10 @@ struct PlanThresholds {
     bool operator==(const PlanThresholds&) const = default;
 };
 
+/// Names that quality_named knows, for messages.
 inline constexpr const char* kQualityNames = "draft, photo or reference";
 
-/// Thresholds of a named quality; std::nullopt if the name is unknown.
+/// Returns the thresholds of a named quality; std::nullopt if the name is unknown.
 inline std::optional<PlanThresholds> quality_named(const std::string& name) {
     if (name == "draft") return PlanThresholds{2, 4};
     if (name == "photo") return PlanThresholds{};
@@ -36,37 +37,40 @@ inline std::optional<PlanThresholds> quality_named(const std::string& name) {
 
 struct LensEffects;
 
-inline constexpr int kMaxThreads = 4096;  ///< more than machines have cores; TBB fails far beyond this
+/// Limit on RenderSettings::threads: more than machines have cores; TBB fails far beyond this.
+inline constexpr int kMaxThreads = 4096;
 
+/// Effects that the planner chooses.
 inline constexpr EffectChoice kAutomaticEffects = [] {
     EffectChoice effects;
     effects.is_automatic = true;
     return effects;
 }();
 
-inline constexpr int kMostBounces = 64;  ///< after 64 mirrors that reflect 95%, 4% of the light is left
+/// Limit on RenderSettings::max_bounces: after 64 mirrors that reflect 95%, 4% of the light is left.
+inline constexpr int kMostBounces = 64;
 
 /// Settings of a picture, common to the command line, shot files, Python, and all kinds of sessions.
 struct RenderSettings {
     int spp = 64;  ///< samples per pixel
-    std::uint32_t seed = 0;
+    std::uint32_t seed = 0;  ///< of the random numbers
     std::optional<int> max_bounces = {};  ///< 0: direct light only; std::nullopt: the planner decides
     int threads = 0;      ///< CPU threads; 0: all
     LightTransport transport = LightTransport::paths;
     double clamp = 0;  ///< see PathSettings
-    LayerSet layers = {};
-    EffectChoice effects = kAutomaticEffects;
+    LayerSet layers = {};  ///< additional outputs
+    EffectChoice effects = kAutomaticEffects;  ///< effects that are simulated
     PlanThresholds thresholds = {};  ///< for automatic effects
     std::optional<Illuminant> illuminant = {};  ///< for effects with wavelengths; std::nullopt: D65, the white of RGB
-    std::optional<LensFilter> lens_filter =
-        {};  ///< in front of the lens; a coloured one needs effects with wavelengths
-    std::optional<NoiseGoal> noise = {};  ///< instead of spp
+    /// Filter in front of the lens; a coloured one needs effects with wavelengths.
+    std::optional<LensFilter> lens_filter = {};
+    std::optional<NoiseGoal> noise = {};  ///< goal of adaptive sampling, instead of spp
     PupilSampling pupil_sampling = PupilSampling::outline;  ///< for a full lens
     LightTracing light_tracing = LightTracing::weighted;  ///< for a full lens
 
     bool operator==(const RenderSettings&) const = default;
 
-    /// Illuminant of a picture whose samples have wavelengths; otherwise std::nullopt.
+    /// Illuminant of a picture whose samples have wavelengths; std::nullopt if they have none.
     std::optional<Illuminant> spectral_light() const {
         return effects.have_wavelengths() ? std::optional(illuminant.value_or(Illuminant())) : std::nullopt;
     }
@@ -80,13 +84,17 @@ struct RenderSettings {
         illuminant.reset();
         if (lens_filter) lens_filter = lens_filter->neutral_equivalent();
     }
+    /// Settings that a camera's set-up depends on (CameraSetup).
     LensEffects lens_effects() const;
+    /// Selection of ghosts; std::nullopt if no ghosts are simulated.
     std::optional<GhostChoice> ghost_choice() const;
-    /// Light that is traced from lamps is not separated by halves of the pupil.
-    LightTracing lights_traced() const { return layers.has_any(kHalfLayers) ? LightTracing::off : light_tracing; }
+    /// `light_tracing`, but off for dual-pixel layers: splatted light is not separated by halves of the pupil.
+    LightTracing effective_light_tracing() const {
+        return layers.has_any(kHalfLayers) ? LightTracing::off : light_tracing;
+    }
     /// True if effects or bounces are left to the planner.
     bool needs_plan() const { return effects.is_automatic || !max_bounces; }
-    /// Undecided bounces are set to kMostBounces.
+    /// Settings of the path tracer; undecided bounces are set to kMostBounces.
     PathSettings path() const { return {max_bounces.value_or(kMostBounces), transport, static_cast<float>(clamp)}; }
 };
 

@@ -110,7 +110,7 @@ def test_light_that_never_passes_stays_without_numbers() -> None:
 def test_an_unknown_coating_is_said_and_taken_as_bare() -> None:
     lens = rc.Lens.load("double-gauss-50mm")
     camera = camera_with(lens, rc.Film(36, 24, (3, 2)))
-    with pytest.warns(UserWarning, match=r"coatings: it is not known what covers surfaces 1, 2, .* taken as bare"):
+    with pytest.warns(UserWarning, match=r"coatings: the coating of surfaces 1, 2, .* assumed to be uncoated"):
         unknown = rc.render(scenes.sky(), camera, spp=4, effects="coatings")
     with warnings.catch_warnings():
         warnings.simplefilter("error")

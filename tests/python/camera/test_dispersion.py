@@ -328,7 +328,7 @@ def test_what_makes_no_picture_is_an_error() -> None:
     short = camera.replace(lens=lens.with_surface(0, material=known))
     for taken_by, effects, illuminant, message in (
         (camera, "glare", None, 'unknown effect "glare"; expected some of auto, none, dispersion, coatings'),
-        (camera, (), "A", "illuminant belongs to the effects dispersion and diffraction"),
+        (camera, (), "A", "illuminant needs one of the effects dispersion and diffraction"),
         (camera.replace(model="thin"), "dispersion", None, "dispersion: the camera's model must be full"),
         (camera, "dispersion", "D100", "illuminant: .*is unknown"),
         (camera, "dispersion", 900.0, "illuminant: .*between 380 and 780"),
@@ -359,5 +359,5 @@ def test_metadata_session_and_shot_file(tmp_path: Path) -> None:
     shot = rc.Shot.load(tmp_path / "a.toml")
     assert (shot.effects, shot.illuminant) == (("dispersion",), "400:1,700:2.5")
     (tmp_path / "b.toml").write_text(text + "effects = []\nilluminant = 546\n")
-    with pytest.raises(rc.InputError, match=r"b\.toml:6: illuminant belongs to the effects dispersion and diffraction"):
+    with pytest.raises(rc.InputError, match=r"b\.toml:6: illuminant needs one of the effects dispersion"):
         rc.Shot.load(tmp_path / "b.toml")

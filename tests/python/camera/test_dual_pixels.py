@@ -134,10 +134,10 @@ def test_halves_that_are_asked_for_later_begin_a_picture() -> None:
 @pytest.mark.parametrize(
     ("changes", "model", "message"),
     [
-        ({"layers": (*HALVES, "variance")}, "full", "cannot be had of one picture"),
-        ({"light_tracing": "alone"}, "full", "no halves of dual pixels"),
-        ({"pupil_sampling": "pixel"}, "full", "no halves of dual pixels"),
-        ({}, "pinhole", "the pupil of a pinhole has no halves"),
+        ({"layers": (*HALVES, "variance")}, "full", "variance and dual-pixel halves exclude each other"),
+        ({"light_tracing": "alone"}, "full", "light_tracing must not be alone"),
+        ({"pupil_sampling": "pixel"}, "full", "pixel excludes the layers of dual-pixel halves"),
+        ({}, "pinhole", "a pinhole has no dual-pixel halves"),
     ],
 )
 def test_what_has_no_halves_says_so(changes: dict[str, Any], model: str, message: str) -> None:

@@ -309,7 +309,7 @@ def test_a_share_that_is_none_is_refused(effect: str) -> None:
 
 def test_shares_are_told_again() -> None:
     camera = rc.Camera(rc.Lens.load("double-gauss-50mm"), film=FILM)
-    with pytest.warns(UserWarning, match="ghosts: it is not known what covers surfaces"):
+    with pytest.warns(UserWarning, match="ghosts: the coating of surfaces"):
         assert rc.render(scenes.sky(), camera, spp=1, effects="ghosts=1e-8").effects == ("ghosts=1e-08",)
 
 

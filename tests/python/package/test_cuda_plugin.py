@@ -38,7 +38,7 @@ def wants(plugin: Path) -> Path:
 def useless(request: pytest.FixtureRequest) -> tuple[object, str]:
     """A path, and what is said of it."""
     if request.param == "another version":
-        return wants(OTHER_VERSION), "is of realcam 9.8.7 (build of the tests), and this is realcam "
+        return wants(OTHER_VERSION), "was built for realcam 9.8.7 (build of the tests); this is realcam "
     return {
         "none": ("", "pip install realcam[cuda]"),
         "not there": ("/nowhere/plugin.so", "cannot be loaded: /nowhere/plugin.so"),

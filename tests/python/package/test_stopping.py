@@ -337,7 +337,7 @@ def test_no_thread_to_be_had_is_told() -> None:
         out, errors = process.communicate(timeout=60)
         assert process.returncode == 0, errors
         answers.append(out.strip())
-    told = "the system starts no thread; allow more memory (ulimit -v) or threads (ulimit -u)"
+    told = "the system could not start a thread; allow more memory (ulimit -v) or threads (ulimit -u)"
     assert answers[0] == told
     assert set(answers) <= {told, "out of memory", "rendered"}
 

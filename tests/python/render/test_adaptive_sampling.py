@@ -166,7 +166,7 @@ def test_lamps_that_no_sample_may_have_met_are_told(settings: dict[str, object],
 
     missed = reached(0.003, (0.3, 0.2, -6), **settings)
     assert not missed.is_reached
-    assert "lamps fill down to 1/" in missed.shortfall
+    assert "lamps that fill only 1/" in missed.shortfall
     # Five over its share of the pixel, which is (0.003 / 0.09)^2 but for the blur.
     assert 3000 < missed.spp_wanted < 20000
     behind_the_camera = reached(0.003, (0.3, 0.2, 6), **settings)
@@ -227,7 +227,7 @@ def test_layers_and_progress_go_along(device: str) -> None:
     [
         ({"spp": 8, "noise": 0.1}, 'noise, noise_codes, seconds and max_spp belong to spp="auto"'),
         ({"spp": "all"}, 'spp must be a whole number or "auto"'),
-        ({"noise": float("nan")}, "noise must be a number from 1e-9 on"),
+        ({"noise": float("nan")}, "noise must be at least 1e-9"),
         ({"noise": 1e-300}, "noise must be"),
         ({"noise_codes": float("inf")}, "noise_codes must be"),
         ({"noise": 0.1, "noise_codes": 1}, "exclude each other"),

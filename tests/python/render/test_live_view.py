@@ -29,7 +29,7 @@ def scene() -> rc.Scene:
 
 def test_devices_of_a_live_view(scene: rc.Scene) -> None:
     assert rc.LiveView(scene, device="auto").shoot(camera()).samples == 1
-    with pytest.raises(rc.InputError, match="frames are taken on one GPU"):
+    with pytest.raises(rc.InputError, match="frames are taken on a single GPU"):
         rc.LiveView(scene, device="cuda:0,1")
 
 

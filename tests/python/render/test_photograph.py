@@ -99,7 +99,7 @@ def test_scenes_and_lenses_may_be_in_memory() -> None:
         ({"f_number": "wide"}, '"f_number" must be a number; it is "wide"'),
         ({"focus_m": math.nan}, '"focus_m" must be a number of metres, inf or auto'),
         ({"iso": {1}}, "iso must be a value of a shot file (a number, a text or a list); it is {1}"),
-        ({"noise": 0.1, "noise_codes": 2}, "noise (a share of the light) and noise_codes"),
+        ({"noise": 0.1, "noise_codes": 2}, "noise (a fraction of the light) and noise_codes"),
         ({'tone = "film"\nspp': 3}, "unknown key"),
     ],
     ids=lambda value: next(iter(value)) if isinstance(value, dict) else "",

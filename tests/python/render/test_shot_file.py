@@ -251,7 +251,7 @@ MISTAKES = [
     ("spp = 0", r":3: spp must lie between"),
     ("spp = 1e300", r':3: "spp" wants whole numbers from 0 to'),
     ("spp = 4\nseconds = 3", r':3: .*belong to spp "auto"'),
-    ("noise_codes = 0", r":3: noise_codes must be a number from 1e-9 on"),
+    ("noise_codes = 0", r":3: noise_codes must be at least 1e-9"),
     ("seconds = -1", r":3: seconds must be above 0"),
     ("environment_cd_m2 = -1", r":3: .*between 0 and 1e20"),
     ("environment_cd_m2 = [1, 2]", r":3: .*array of 3 numbers"),

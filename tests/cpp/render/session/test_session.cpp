@@ -63,15 +63,16 @@ private:
     }
     bool has_new_pupil() const override { return has_new_pupil_; }
     void clear() override { notes.push_back("clear"); }
-    void take(const SampleRange& range, const PixelCounts&, bool, std::atomic<std::int64_t>& done, OwnStop&) override {
+    void take_samples(const SampleRange& range, const PixelCounts&, bool, std::atomic<std::int64_t>& done,
+                      OwnStop&) override {
         notes.push_back("take");
         taken.push_back(range);
         if (while_taking) while_taking();
         done += range.count;
         if (fails) throw DeviceError("lost");
     }
-    std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve,
-                                     std::shared_ptr<void>) override {
+    std::shared_ptr<LiveFrame> start_frame(const std::vector<SampleRange>& ranges, ToneCurve,
+                                           std::shared_ptr<void>) override {
         for (const SampleRange& range : ranges) taken.push_back(range);
         return frames.emplace_back(std::make_shared<NotedFrame>(samples(), stop_flag));
     }
@@ -90,15 +91,15 @@ private:
         taken.push_back(range);
         return {};
     }
-    void see_layers(const FilmRegion&, const SampleRange& range, std::vector<LayerSum>& film,
-                    std::atomic<std::int64_t>& done, OwnStop&) override {
+    void trace_layers(const FilmRegion&, const SampleRange& range, std::vector<LayerSum>& film,
+                      std::atomic<std::int64_t>& done, OwnStop&) override {
         notes.push_back("see layers");
         seen.push_back(range);
         if (while_seeing) while_seeing();
         for (LayerSum& sum : film) sum.weight += range.count;
         done += range.count;
     }
-    void see_pixel_centre_surfaces(std::vector<PixelCentreSurface>& film, OwnStop&) override {
+    void trace_pixel_centres(std::vector<PixelCentreSurface>& film, OwnStop&) override {
         notes.push_back("see middle");
         for (PixelCentreSurface& surface : film) surface = {1.5f, {0, 0, 1}, 0, kNoInstance, 0, {0, 0, -1.5f}};
     }
@@ -134,7 +135,8 @@ TEST_CASE("a session prepares what is another picture, and goes on with what is 
     Camera camera = small_camera();
     RenderSettings settings{.effects = {}};
     NotedSession session;
-    CHECK_THROWS_WITH_AS(session.add(1), "nothing is set that could be photographed; set() prepares it", InputError);
+    CHECK_THROWS_WITH_AS(session.add(1), "there is no scene to photograph yet; set() sets scene, camera and settings",
+                         InputError);
     const auto next = [&] {
         session.notes.clear();
         session.set(scene, camera, settings);
@@ -208,7 +210,7 @@ TEST_CASE("samples go on where the last ended, also after a stop; a failure begi
     CHECK(session.sample_counts().counts == std::vector<std::int64_t>{12});
 
     session.cancel(Collected::drop);
-    CHECK_THROWS_WITH_AS(session.picture(), "there is no picture yet; samples have to be taken first", InputError);
+    CHECK_THROWS_WITH_AS(session.picture(), "there is no picture yet; it needs samples first", InputError);
     CHECK(session.sample_counts().counts == std::vector<std::int64_t>{0});
     session.add(1);
     CHECK(session.taken.back().first == 0);
@@ -370,7 +372,7 @@ TEST_CASE("parts of a picture are exposed apart from it, in steps that whole pic
     camera.film.height = 4;
     NotedSession session;
     CHECK_THROWS_WITH_AS(session.expose_region({0, 0, 1, 1}, 0, 1),
-                         "nothing is set that could be photographed; set() prepares it", InputError);
+                         "there is no scene to photograph yet; set() sets scene, camera and settings", InputError);
     RenderSettings settings{.seed = 9, .effects = {}};
     session.set(scene, camera, settings);
     session.add(3);

@@ -8,9 +8,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-namespace see_layers_detail {
+namespace trace_layers_detail {
 
-/// Traces the rays that passed the lens to their first surfaces. Their random numbers and times are set before.
+/// Traces the camera rays that passed the lens to their first surfaces. `rays.number` and `rays.time` must be set.
 template <int N, class SceneT>
 REALCAM_HD inline void trace_to_surfaces(const CameraRays<N>& camera_rays, SceneT&& scene, SceneRays<N>& rays,
                                          Hits<N>& hits) {
@@ -24,17 +24,19 @@ REALCAM_HD inline void trace_to_surfaces(const CameraRays<N>& camera_rays, Scene
     scene.intersect(rays, hits);
 }
 
+/// Returns the diameter of the circle of confusion at a depth from the film, mm.
 REALCAM_INLINE float circle_at(const CameraView& camera, float depth_m) {
     return circle_diameter(camera.circle, 1000.0f * (depth_m - camera.front_vertex_m));
 }
 
-}  // namespace see_layers_detail
+}  // namespace trace_layers_detail
 
-/// First surfaces of the samples of a block, the same samples as in render_samples. SceneT as in advance_paths.
+/// Finds the first surfaces of the samples of a block, whose camera rays are those of render_samples. `scene`: see
+/// advance_paths.
 template <int N, class SceneT>
-REALCAM_HD inline void see_layers(const SceneView& view, const CameraView& camera, const SampleBlock<N>& block,
-                                  SceneT&& scene, LayerResults<N>& results) {
-    using namespace see_layers_detail;
+REALCAM_HD inline void trace_layers(const SceneView& view, const CameraView& camera, const SampleBlock<N>& block,
+                                    SceneT&& scene, LayerResults<N>& results) {
+    using namespace trace_layers_detail;
     CameraRays<N> camera_rays;
     SceneRays<N> rays;
     Hits<N> hits;
@@ -62,16 +64,17 @@ REALCAM_HD inline void see_layers(const SceneView& view, const CameraView& camer
     }
 }
 
-/// Nearest surface on the ray of each pixel's centre, for a block (pixel_centre_rays).
+/// Finds the nearest surface on the ray of each pixel's centre (pixel_centre_rays). `block`: one lane per pixel; sample
+/// indices and random numbers are not used.
 template <int N, class SceneT>
-REALCAM_HD inline void see_pixel_centre_surfaces(const SceneView& view, const CameraView& camera,
-                                                 const SampleBlock<N>& block, SceneT&& scene,
-                                                 PixelCentreSurface (&surfaces)[N]) {
-    using namespace see_layers_detail;
+REALCAM_HD inline void trace_pixel_centres(const SceneView& view, const CameraView& camera, const SampleBlock<N>& block,
+                                           SceneT&& scene, PixelCentreSurface (&surfaces)[N]) {
+    using namespace trace_layers_detail;
     CameraRays<N> camera_rays;
     SceneRays<N> rays;
     Hits<N> hits;
     pixel_centre_rays(camera, block, camera_rays, rays.time);
+    // One ray stands for the whole pixel, so that partly opaque surfaces must not depend on chance.
     for (int i = 0; i < N; ++i) rays.number[i] = kDecidedRay;
     trace_to_surfaces(camera_rays, scene, rays, hits);
     for (int i = 0; i < N; ++i) {
