@@ -84,8 +84,13 @@ def main() -> None:
     means = [averages(a) for a in alphas]
     Path("cpp/scene/materials/ggx_tables.hpp").write_text(
         "#pragma once\n"
-        "// Written by tools/make_ggx_tables.py, which says what the numbers are. Macros, because host and\n"
-        "// device each need an array of their own (ggx_albedo.hpp).\n"
+        "// Directional albedo of single scattering by GGX microfacets, as read by ggx_albedo.hpp and written by\n"
+        "// tools/make_ggx_tables.py. Rows: the square root of alpha, from that of 0.001 to 1. ALBEDO: albedo for a\n"
+        "// Fresnel term of 1; columns: the cosine on the surface stretched to alpha 1, to the power 2/3. SCHLICK:\n"
+        "// albedo for the Fresnel term (1 - cosine)^5, relative to ALBEDO; columns: the square root of the cosine.\n"
+        "// MEAN_LOSS: 1 - cosine-weighted mean of the albedo, divided by alpha^2. MEAN_SCHLICK: cosine-weighted\n"
+        "// mean for the Fresnel term. The tables are macros, because host and device each need an array of their\n"
+        "// own.\n"
         "// clang-format off\n\n"
         f"#define REALCAM_GGX_ROWS {ROWS}\n#define REALCAM_GGX_COLUMNS {COLUMNS}\n\n"
         + text_of("REALCAM_GGX_ALBEDO", everything)

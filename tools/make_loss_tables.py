@@ -209,25 +209,30 @@ def main() -> None:
     borders, border_means = border_tables(ggx)
     coats, coat_means = coat_tables(ggx)
     sizes = {
-        "BORDER_LAYERS": LAYERS,
-        "BORDER_ROWS": ROWS,
-        "BORDER_COLUMNS": COLUMNS,
-        "BORDER_MEAN_ROWS": MEAN_ROWS,
+        "INTERFACE_LAYERS": LAYERS,
+        "INTERFACE_ROWS": ROWS,
+        "INTERFACE_COLUMNS": COLUMNS,
+        "INTERFACE_MEAN_ROWS": MEAN_ROWS,
         "COAT_LAYERS": COAT_LAYERS,
         "COAT_ROWS": COAT_ROWS,
         "COAT_COLUMNS": COAT_COLUMNS,
     }
     Path("cpp/scene/materials/loss_tables.hpp").write_text(
         "#pragma once\n"
-        "// Written by tools/make_loss_tables.py, which says what the numbers are. Macros, because host and\n"
-        "// device each need an array of their own (dielectric_border.hpp, bsdf.hpp).\n"
+        "// Energy that single scattering loses, as read by dielectric_interface.hpp and bsdf.hpp and written by\n"
+        "// tools/make_loss_tables.py. INTERFACE_LOSS: at a rough dielectric interface, first outside, then inside,\n"
+        "// relative to a function of roughness and cosine; layers: the cosine of the critical angle, rows: the\n"
+        "// square root of alpha, columns: the square root of the cosine. INTERFACE_MEAN_LOSS: its cosine-weighted\n"
+        "// mean, divided by alpha^2. COAT_LOSS: of a perfectly reflecting rough metal under a coat; layers: the\n"
+        "// square root of the coat's alpha, rows: of the metal's, columns: of the cosine. COAT_MEAN_LOSS: its\n"
+        "// cosine-weighted mean. The tables are macros, because host and device each need an array of their own.\n"
         "// clang-format off\n\n"
         + "".join(f"#define REALCAM_{name} {size}\n" for name, size in sizes.items())
-        + f"#define REALCAM_BORDER_LEAST_CRITICAL {LEAST_CRITICAL}f\n"
-        + f"#define REALCAM_BORDER_MOST_CRITICAL {MOST_CRITICAL:.7f}f\n\n"
-        + text_of("REALCAM_BORDER_LOSS", borders)
+        + f"#define REALCAM_INTERFACE_LEAST_CRITICAL {LEAST_CRITICAL}f\n"
+        + f"#define REALCAM_INTERFACE_MOST_CRITICAL {MOST_CRITICAL:.7f}f\n\n"
+        + text_of("REALCAM_INTERFACE_LOSS", borders)
         + "\n"
-        + text_of("REALCAM_BORDER_MEAN_LOSS", border_means)
+        + text_of("REALCAM_INTERFACE_MEAN_LOSS", border_means)
         + "\n"
         + text_of("REALCAM_COAT_LOSS", coats)
         + "\n"

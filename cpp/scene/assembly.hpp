@@ -24,11 +24,13 @@ struct SceneCamera {
     double vertical_field_rad = 0;
     std::shared_ptr<const Motion> motion = nullptr;  ///< null: not animated
 
+    /// False for an orthographic camera.
     bool has_pose() const { return vertical_field_rad > 0; }
+    /// Returns scene_from_camera at a time in seconds.
     Affine<double> transform_at(double time_s) const { return motion ? motion->at(time_s) : scene_from_camera; }
 };
 
-/// Animated transform of an object: a fixed transform or keyframes. Metres in both frames.
+/// Transform of an object: fixed, or animated by keyframes. Metres in both frames.
 struct AnimatedTransform {
     Affine<double> scene_from_object;  ///< for an animated object: at time 0
     std::shared_ptr<const Motion> motion;  ///< null: not animated
@@ -38,22 +40,25 @@ struct AnimatedTransform {
     AnimatedTransform(Motion keys)
         : scene_from_object(keys.at(0)), motion(std::make_shared<const Motion>(std::move(keys))) {}
 
+    /// Returns scene_from_object at a time in seconds.
     Affine<double> at(double time_s) const { return motion ? motion->at(time_s) : scene_from_object; }
 };
 
 /// An instance of an object: the triangles and point lights of another scene, without its suns and environment.
 struct Instance {
-    static constexpr std::ptrdiff_t kNoWhole = -1;
+    static constexpr std::ptrdiff_t kNoWhole = -1;  ///< `part_of` of an instance without a parent
 
     std::shared_ptr<const Scene> object;
-    Affine<double> scene_from_object;  ///< see AnimatedTransform
-    std::string name;  ///< for messages and look-up
+    Affine<double> scene_from_object;  ///< for an animated instance: at time 0
+    std::string name;  ///< for messages and look-up; may be empty
     /// Index of the parent instance, with which this one moves, or kNoWhole. A part comes after its parent.
     std::ptrdiff_t part_of = kNoWhole;
-    std::shared_ptr<const Motion> motion = nullptr;
+    std::shared_ptr<const Motion> motion = nullptr;  ///< null: not animated
 
+    /// Returns scene_from_object at a time in seconds.
     Affine<double> transform_at(double time_s) const { return motion ? motion->at(time_s) : scene_from_object; }
-    void put(const AnimatedTransform& placement);
+    /// Replaces scene_from_object and motion.
+    void set_transform(const AnimatedTransform& transform);
 };
 
 /// A scene as static geometry and instances of objects, with value semantics: copies share the geometry. Backends
@@ -69,21 +74,26 @@ struct Assembly {
     Assembly(std::shared_ptr<const Scene> scene) : static_geometry(std::move(scene)) {}
     Assembly(Scene scene) : static_geometry(std::make_shared<const Scene>(std::move(scene))) {}
 
+    /// True if the static geometry or any instance emits light.
     bool has_light() const;
+    /// True if any instance is animated.
     bool moves() const {
         return std::any_of(instances.begin(), instances.end(), [](const Instance& i) { return i.motion != nullptr; });
     }
+    /// Number of triangles of the static geometry and of all instances, each counted in full.
     std::size_t triangle_count() const;
 };
 
 /// True if two scenes share static geometry and objects; transforms may differ.
 bool same_parts(const Assembly& a, const Assembly& b);
 
-bool same_placement(const Instance& a, const Instance& b);
+/// True if two instances have the same transform and motion.
+bool same_transform(const Instance& a, const Instance& b);
 
+/// True if all instances of two scenes have the same transforms and motions; the scenes must have equally many.
 bool same_transforms(const Assembly& a, const Assembly& b);
 
-/// Returns the instance's index and name, for messages.
+/// Returns the instance's index and name, for messages: instance 3 ("car").
 std::string label(const Assembly& assembly, std::size_t instance);
 
 /// Returns why a matrix is not a valid instance transform; empty if it is valid.
@@ -117,14 +127,15 @@ bool are_close(const Affine<double>& a, const Affine<double>& b);
 /// Key times of several motions, sorted, without duplicates; null motions have no keys.
 std::vector<double> all_times(std::initializer_list<const Motion*> motions);
 
-/// Animated transform with keys at `times`, where it equals at(time); fixed, at(0), if `times` is empty.
+/// Samples `at`, a function from a time in seconds to an Affine<double>: returns an animated transform with keys at
+/// `times`; if `times` is empty, a fixed one, at(0).
 template <class At>
 AnimatedTransform animated_transform(const std::vector<double>& times, At&& at) {
     return times.empty() ? AnimatedTransform(at(0.0)) : AnimatedTransform(sampled_motion(times, at));
 }
 
-/// Sets the transform or motion of an instance and moves its parts, recursively, along with it.
-void move(Assembly& assembly, std::size_t instance, const AnimatedTransform& placement);
+/// Sets the transform of an instance and moves its parts, recursively, along with it.
+void move(Assembly& assembly, std::size_t instance, const AnimatedTransform& transform);
 
 /// Makes instance names unique, so that a name identifies one instance: of several called "car" the first keeps that
 /// name, and the others become "car.2", "car.3" and so on. Empty names stay empty.
@@ -140,7 +151,7 @@ public:
 
 private:
     std::unordered_set<std::string> taken_;
-    std::unordered_map<std::string, int> numbers_;
+    std::unordered_map<std::string, int> numbers_;  ///< the last number that was appended to each name
 };
 
 /// Makes the instance names of a scene unique.
@@ -148,7 +159,7 @@ void make_names_distinct(Assembly& assembly);
 
 /// Instances an object in a scene. The object's own instances become parts of the new one, named name/part. `names`:
 /// the names that the scene already uses.
-void add(Assembly& assembly, const Assembly& object, const AnimatedTransform& placement, const std::string& name,
+void add(Assembly& assembly, const Assembly& object, const AnimatedTransform& transform, const std::string& name,
          DistinctNames& names);
 
 }  // namespace REALCAM_NAMESPACE

@@ -7,6 +7,8 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Materials, in the same form for scenes in memory and for kernels.
+
 /// Wrap mode outside 0..1: repeat the texture, clamp to the edge texels, or mirror it.
 enum class TextureWrap : std::int8_t { repeat, clamp, mirror };
 
@@ -39,7 +41,7 @@ enum class MaterialModel : std::int32_t {
     metallic_roughness,  ///< glTF 2.0: GGX over a diffuse, metallic or transmitting base, under a clear coat
 };
 
-/// Angular dependence of a smooth border's reflectance: constant, or by the Fresnel equations.
+/// Angular dependence of a smooth interface's reflectance: constant (none), or by the Fresnel equations (physical).
 enum class FresnelTerm : std::int32_t { none, physical };
 
 /// Scattering and emission of a surface. Parameters have the meaning and units of the file formats.
@@ -63,7 +65,7 @@ struct Material {
     TextureReference opacity_texture;  ///< its alpha channel multiplies opacity
     TextureReference diffuse_texture, specular_texture, emission_texture;
     float ior = 1.5f;  ///< refractive index of the interior
-    float transmission = 0;  ///< transmitting share of the dielectric part, 0 to 1
+    float transmission = 0;  ///< fraction of the dielectric part that transmits light, 0 to 1
     Color filter = {1, 1, 1};  ///< factor of transmitted light (MTL Tf); metallic_roughness uses the base colour
     Color absorption = {0, 0, 0};  ///< of the interior, per metre (KHR_materials_volume)
     std::int32_t is_thin = 0;  ///< not 0: thin-walled, without an interior; transmitted rays are not refracted
@@ -74,16 +76,18 @@ struct Material {
     FresnelTerm fresnel = FresnelTerm::physical;  ///< for mirror and transmission
 
     // metallic_roughness
-    float metallic = 0, roughness = 1;
-    float specular_weight = 1;  ///< factor of the dielectric's reflection at any angle
-    float clearcoat = 0, clearcoat_roughness = 0;
+    float metallic = 0, roughness = 1;  ///< 0 to 1; GGX alpha is the square of the roughness
+    float specular_weight = 1;  ///< factor of the dielectric's reflection at any angle (KHR_materials_specular)
+    float clearcoat = 0,
+          clearcoat_roughness = 0;  ///< weight and roughness of the coat, 0 to 1 (KHR_materials_clearcoat)
     /// Linear; roughness in green, metallic in blue; phong: green multiplies shininess.
     TextureReference metallic_roughness_texture;
 
     TextureReference normal_texture;  ///< tangent space, linear
-    float normal_scale = 1;
+    float normal_scale = 1;  ///< factor of the normal map's x and y
 
-    // Rarely present, and read only if the parameter that they multiply is not 0. Linear.
+    // Textures that few materials have, all linear. Each multiplies the parameter of its name by one channel and is
+    // read only if that parameter is not 0.
     TextureReference transmission_texture;  ///< red
     TextureReference specular_weight_texture;  ///< alpha
     TextureReference clearcoat_texture;  ///< red
@@ -93,6 +97,7 @@ struct Material {
 
     constexpr bool operator==(const Material&) const = default;
 
+    /// True if the surface emits light.
     constexpr bool emits() const { return !is_black(emission); }
     /// True for an opaque surface with Lambertian and Phong lobes and emission on one side, with no texture except for
     /// diffuse.
@@ -107,6 +112,7 @@ struct Material {
     }
 };
 
+/// All texture references of a Material, as pointers to members.
 inline constexpr std::array<TextureReference Material::*, 11> kMaterialTextures = {
     &Material::diffuse_texture,         &Material::specular_texture,
     &Material::emission_texture,        &Material::metallic_roughness_texture,
@@ -120,7 +126,7 @@ inline constexpr std::array<TextureReference Material::*, 11> kMaterialTextures 
 enum class SceneKind : std::int32_t {
     plain,  ///< all materials are plain (Material::is_plain), there are no vertex colours, and nothing moves
     opaque,  ///< no material has holes (Material::has_holes), and nothing moves
-    any,
+    any,  ///< no restriction
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -20,9 +20,9 @@ std::vector<std::string> material_names(const Scene& scene) {
     std::set<std::string> taken;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const bool named = i < scene.material_names.size() && !scene.material_names[i].empty();
-        const std::string wanted = named ? scene.material_names[i] : "material " + std::to_string(i);
-        std::string name = wanted;
-        for (int k = 2; !taken.insert(name).second; ++k) name = wanted + '.' + std::to_string(k);
+        const std::string base = named ? scene.material_names[i] : "material " + std::to_string(i);
+        std::string name = base;
+        for (int k = 2; !taken.insert(name).second; ++k) name = base + '.' + std::to_string(k);
         names.push_back(name);
     }
     return names;
@@ -41,16 +41,17 @@ Environment changed(Environment environment, const EnvironmentChange& change) {
     for (Color& pixel : environment.pixels) pixel = scale * pixel;
     if (environment.pixels.empty() || change.rotation_deg == 0) return environment;
     const auto width = static_cast<std::size_t>(environment.width);
-    const double turns = change.rotation_deg / 360;
-    const double columns = (turns - std::floor(turns)) * static_cast<double>(width);
-    const auto whole = static_cast<std::size_t>(columns);
-    const auto part = static_cast<float>(columns - static_cast<double>(whole));
-    std::vector<Color> row(width);
+    const double revolutions = change.rotation_deg / 360;
+    // The map is shifted cyclically to the left by this number of columns.
+    const double shift = (revolutions - std::floor(revolutions)) * static_cast<double>(width);
+    const auto whole_columns = static_cast<std::size_t>(shift);
+    const auto fraction = static_cast<float>(shift - static_cast<double>(whole_columns));
+    std::vector<Color> shifted_row(width);
     for (std::size_t begin = 0; begin < environment.pixels.size(); begin += width) {
-        Color* const pixels = environment.pixels.data() + begin;
+        Color* const row = environment.pixels.data() + begin;
         for (std::size_t c = 0; c < width; ++c)
-            row[c] = mix(pixels[(c + whole) % width], pixels[(c + whole + 1) % width], part);
-        for (std::size_t c = 0; c < width; ++c) pixels[c] = row[c];
+            shifted_row[c] = mix(row[(c + whole_columns) % width], row[(c + whole_columns + 1) % width], fraction);
+        for (std::size_t c = 0; c < width; ++c) row[c] = shifted_row[c];
     }
     return environment;
 }

@@ -7,10 +7,11 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Texture image, row by row from the top: 8-bit codes in `rgba` or floats in `linear_rgba`; the other one is empty.
 struct Texture {
     std::string name;  ///< file name, for messages
-    std::int32_t width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;  ///< empty: linear_rgba holds the texels
+    std::int32_t width = 0, height = 0;  ///< in texels
+    std::vector<std::uint8_t> rgba;  ///< four codes for each texel; empty: linear_rgba holds the texels
     std::vector<float> linear_rgba;  ///< four floats for each texel
     TextureEncoding encoding = TextureEncoding::srgb;  ///< of `rgba`
 };
@@ -25,10 +26,12 @@ struct ScenePointLight {
     double inner_cone_rad = 0, outer_cone_rad = 0;
 };
 
+/// Light from infinity: the same radiance from all directions, or a latitude-longitude map (row 0 is +y, the middle
+/// column -z).
 struct Environment {
-    Color constant = {0, 0, 0};  ///< cd/m^2
-    std::int32_t width = 0, height = 0;
-    std::vector<Color> pixels;  ///< empty: the environment is constant
+    Color constant = {0, 0, 0};  ///< radiance in cd/m^2, used if there are no pixels
+    std::int32_t width = 0, height = 0;  ///< of the map, in pixels
+    std::vector<Color> pixels;  ///< radiance in cd/m^2, row by row; empty: the environment is constant
 
     bool emits() const { return !pixels.empty() || !is_black(constant); }
 };
@@ -53,6 +56,7 @@ struct Scene {
     /// Problems that the reader tolerated, such as a missing texture, for the caller to show.
     std::vector<std::string> warnings;
 
+    /// True if anything emits light: a point light, an emissive triangle, a sun or the environment.
     bool has_light() const { return has_local_light() || !suns.empty() || environment.emits(); }
 
     /// True if the scene has a light at a finite position: a point light or an emissive triangle.
@@ -63,10 +67,10 @@ struct Scene {
 /// second "wood".
 std::vector<std::string> material_names(const Scene& scene);
 
-/// Edit of an environment before rendering.
+/// Change of an environment before rendering.
 struct EnvironmentChange {
     double scale = 1;  ///< factor of its radiance
-    double rotation_deg = 0;  ///< About +y, the vertical, counterclockwise seen from above: 90 degrees take -z to -x.
+    double rotation_deg = 0;  ///< about +y, the vertical, counterclockwise seen from above: 90 degrees take -z to -x
 
     bool says_nothing() const { return scale == 1 && rotation_deg == 0; }
 };

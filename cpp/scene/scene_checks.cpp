@@ -9,34 +9,31 @@ namespace realcam {
 namespace {
 
 // Traversal and planes need its cube, which is still far below the largest float.
-constexpr double farthest_m = 1e12;
-// Beyond all real emitters, the sun as a point light included; products with distances or lobes are still finite
-// floats.
-constexpr float brightest = 1e20f, most_intense = 1e30f;
+constexpr double kMaxCoordinate_m = 1e12;
+// Limits of radiance (cd/m^2) and illuminance (lux), and of intensity (cd): beyond all real emitters, the sun as a
+// point light included; products with distances or lobes are still finite floats.
+constexpr float kMaxRadiance = 1e20f, kMaxIntensity = 1e30f;
 
-bool finite(Vec3f v) {
+bool is_finite(Vec3f v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 bool is_reflectance(Color c) {
-    return finite({c.r, c.g, c.b}) && c.r >= 0 && c.g >= 0 && c.b >= 0;
+    return is_finite({c.r, c.g, c.b}) && c.r >= 0 && c.g >= 0 && c.b >= 0;
 }
 
-bool is_light(Color c, float most) {
-    return is_reflectance(c) && largest(c) <= most;
-}
-
-bool is_share(Color c) {
-    return is_light(c, 1.0f);
+bool is_between_0_and(Color c, float max) {
+    return is_reflectance(c) && largest(c) <= max;
 }
 
 }  // namespace
 
 bool in_reach(Vec3d p_m) {
-    return std::abs(p_m.x) <= farthest_m && std::abs(p_m.y) <= farthest_m && std::abs(p_m.z) <= farthest_m;
+    return std::abs(p_m.x) <= kMaxCoordinate_m && std::abs(p_m.y) <= kMaxCoordinate_m &&
+           std::abs(p_m.z) <= kMaxCoordinate_m;
 }
 
-std::string why_out_of_reach(Vec3d p) {
+std::string coordinates_error(Vec3d p) {
     std::ostringstream text;
     text << "coordinates must be finite numbers" << (is_finite(p) ? " of at most 1e12 m" : "") << ", not (" << p.x
          << ", " << p.y << ", " << p.z << ')';
@@ -45,6 +42,7 @@ std::string why_out_of_reach(Vec3d p) {
 
 namespace {
 
+/// Checks one Scene; see validate.
 class Checker {
 public:
     Checker(const Scene& scene, const std::string& file, Checkpoint& checkpoint)
@@ -62,9 +60,11 @@ public:
     }
 
 private:
-    void require(bool good, const std::string& what, std::size_t index, const std::string& wanted) const {
-        if (!good) fail(what + " " + std::to_string(index) + ": " + wanted);
+    /// Fails if an element, such as the vertex of this index, does not meet a requirement.
+    void require(bool is_met, const std::string& element, std::size_t index, const std::string& requirement) const {
+        if (!is_met) fail(element + " " + std::to_string(index) + ": " + requirement);
     }
+    /// Throws SceneFileError for a file, InputError otherwise.
     [[noreturn]] void fail(const std::string& message) const {
         if (file_.empty()) throw InputError("scene: " + message);
         throw SceneFileError(file_ + ": " + message);
@@ -78,23 +78,23 @@ private:
                 require(false, "vertex", i, "coordinates must be finite numbers of at most 1e12 m");
             }
         }
-        const auto one_each = [&](std::size_t size, const char* what) {
+        const auto require_none_or_one_each = [&](std::size_t size, const char* attribute) {
             if (size != 0 && size != count) {
-                fail(std::to_string(size) + " " + what + " for " + std::to_string(count) +
+                fail(std::to_string(size) + " " + attribute + " for " + std::to_string(count) +
                      " vertices; expected none or one for each");
             }
         };
-        one_each(scene_.normals.size(), "normals");
-        one_each(scene_.uvs.size(), "texture coordinates");
-        one_each(scene_.second_uvs.size(), "texture coordinates of the second set");
-        one_each(scene_.colors.size(), "colours of vertices");
+        require_none_or_one_each(scene_.normals.size(), "normals");
+        require_none_or_one_each(scene_.uvs.size(), "texture coordinates");
+        require_none_or_one_each(scene_.second_uvs.size(), "texture coordinates of the second set");
+        require_none_or_one_each(scene_.colors.size(), "colours of vertices");
         for (std::size_t i = 0; i < scene_.normals.size(); ++i) {
-            if (!finite(scene_.normals[i])) require(false, "normal", i, "must be finite numbers");
+            if (!is_finite(scene_.normals[i])) require(false, "normal", i, "must be finite numbers");
         }
         for (std::size_t i = 0; i < scene_.colors.size(); ++i) {
             const VertexColor& c = scene_.colors[i];
             require(is_reflectance(c.color) && c.alpha >= 0 && c.alpha <= 1, "colour of vertex", i,
-                    "must be finite and not negative, and its alpha lie between 0 and 1");
+                    "must be finite and not negative, and its alpha must lie between 0 and 1");
         }
         for (const std::vector<Vec2f>* uvs : {&scene_.uvs, &scene_.second_uvs})
             for (std::size_t i = 0; i < uvs->size(); ++i) {
@@ -104,18 +104,18 @@ private:
     }
 
     void check_triangles() const {
-        const auto out_of = [&](std::size_t t, std::uint32_t index, const char* what, std::size_t count) {
-            fail("triangle " + std::to_string(t) + ": " + what + " " + std::to_string(index) +
+        const auto fail_for = [&](std::size_t t, std::uint32_t index, const char* element, std::size_t count) {
+            fail("triangle " + std::to_string(t) + ": " + element + " " + std::to_string(index) +
                  " does not exist; there are " + std::to_string(count));
         };
         for (std::size_t t = 0; t < scene_.triangles.size(); ++t) {
             checkpoint_.pass();
             const Triangle& triangle = scene_.triangles[t];
             for (const std::uint32_t v : triangle.vertices) {
-                if (v >= scene_.positions_m.size()) out_of(t, v, "vertex", scene_.positions_m.size());
+                if (v >= scene_.positions_m.size()) fail_for(t, v, "vertex", scene_.positions_m.size());
             }
             if (triangle.material >= scene_.materials.size()) {
-                out_of(t, triangle.material, "material", scene_.materials.size());
+                fail_for(t, triangle.material, "material", scene_.materials.size());
             }
         }
     }
@@ -131,14 +131,16 @@ private:
             require(is_reflectance(m.specular), "material", i, "specular reflectance must be finite and not negative");
             require(m.shininess >= 0 && m.shininess <= 1e9f, "material", i,
                     "the Phong exponent must lie between 0 and 1e9");
-            require(is_light(m.emission, brightest), "material", i, "emission must lie between 0 and 1e20 cd/m^2");
-            require(is_share(m.filter), "material", i, "what passes through it must lie between 0 and 1");
+            require(is_between_0_and(m.emission, kMaxRadiance), "material", i,
+                    "emission must lie between 0 and 1e20 cd/m^2");
+            require(is_between_0_and(m.filter, 1.0f), "material", i,
+                    "the factor of transmitted light must lie between 0 and 1");
             require(is_reflectance(m.mirror), "material", i, "mirror reflectance must be finite and not negative");
             require(is_reflectance(m.absorption), "material", i, "absorption must be finite and not negative");
             require(m.ior >= 0 && m.ior <= 1000, "material", i, "the refractive index must lie between 0 and 1000");
-            for (const float share : {m.transmission, m.metallic, m.roughness, m.specular_weight, m.clearcoat,
-                                      m.clearcoat_roughness, m.opacity, m.opacity_cutoff})
-                require(share >= 0 && share <= 1, "material", i,
+            for (const float v : {m.transmission, m.metallic, m.roughness, m.specular_weight, m.clearcoat,
+                                  m.clearcoat_roughness, m.opacity, m.opacity_cutoff})
+                require(v >= 0 && v <= 1, "material", i,
                         "transmission, metallic, roughness, specular weight, clearcoat and its roughness, opacity and "
                         "its cutoff must lie between 0 and 1");
             require(std::isfinite(m.normal_scale) && std::isfinite(m.clearcoat_normal_scale), "material", i,
@@ -152,11 +154,11 @@ private:
             reference.texture >= -1 && reference.texture < textures, "material", material,
             "texture " + std::to_string(reference.texture) + " does not exist; there are " + std::to_string(textures));
         require(reference.texture < 0 || !scene_.uvs.empty(), "material", material,
-                "has a texture, and the vertices have no texture coordinates");
+                "has a texture, but the vertices have no texture coordinates");
         require(reference.uv_set == 0 || (reference.uv_set == 1 && !scene_.second_uvs.empty()), "material", material,
-                "has a texture of a set of coordinates that the vertices do not have");
-        require(finite(reference.to_u) && finite(reference.to_v), "material", material,
-                "a texture's transform must be finite numbers");
+                "has a texture that uses a second set of texture coordinates, which the vertices do not have");
+        require(is_finite(reference.to_u) && is_finite(reference.to_v), "material", material,
+                "a texture's transform must consist of finite numbers");
         const TextureSampler& s = reference.sampler;
         const auto is_wrap = [](TextureWrap w) { return w >= TextureWrap::repeat && w <= TextureWrap::mirror; };
         require(is_wrap(s.u) && is_wrap(s.v) && s.filter >= TextureFilter::linear && s.filter <= TextureFilter::nearest,
@@ -179,7 +181,7 @@ private:
     void check_lights() const {
         for (std::size_t i = 0; i < scene_.points.size(); ++i) {
             require(in_reach(scene_.points[i].position_m), "point light", i, "its position must be finite");
-            require(is_light(scene_.points[i].intensity, most_intense), "point light", i,
+            require(is_between_0_and(scene_.points[i].intensity, kMaxIntensity), "point light", i,
                     "its intensity must lie between 0 and 1e30 cd");
             const ScenePointLight& p = scene_.points[i];
             const double size = length(p.axis);
@@ -189,21 +191,22 @@ private:
         }
         for (std::size_t i = 0; i < scene_.suns.size(); ++i) {
             const Vec3f d = scene_.suns[i].direction;
-            require(finite(d) && std::abs(length(d) - 1.0f) < 1e-3f, "sun", i, "its direction must have length 1");
-            require(is_light(scene_.suns[i].illuminance, brightest), "sun", i,
+            require(is_finite(d) && std::abs(length(d) - 1.0f) < 1e-3f, "sun", i, "its direction must have length 1");
+            require(is_between_0_and(scene_.suns[i].illuminance, kMaxRadiance), "sun", i,
                     "its illuminance must lie between 0 and 1e20 lux");
         }
     }
 
     void check_environment() const {
         const Environment& e = scene_.environment;
-        if (!is_light(e.constant, brightest)) fail("environment: radiance must lie between 0 and 1e20 cd/m^2");
+        if (!is_between_0_and(e.constant, kMaxRadiance))
+            fail("environment: radiance must lie between 0 and 1e20 cd/m^2");
         if (e.pixels.empty()) return;
         if (e.width <= 0 || e.height <= 0 ||
             e.pixels.size() != static_cast<std::size_t>(e.width) * static_cast<std::size_t>(e.height)) {
             fail("environment: expected width x height pixels");
         }
-        if (!std::all_of(e.pixels.begin(), e.pixels.end(), [](Color c) { return is_light(c, brightest); })) {
+        if (!std::all_of(e.pixels.begin(), e.pixels.end(), [](Color c) { return is_between_0_and(c, kMaxRadiance); })) {
             fail("environment: radiance must lie between 0 and 1e20 cd/m^2 in every pixel");
         }
     }
@@ -220,8 +223,8 @@ void validate(const Scene& scene, const std::string& file, bool may_be_empty, Ch
 }
 
 void validate(const Scene& scene, const std::string& file, bool may_be_empty) {
-    Checkpoint unasked;
-    validate(scene, file, may_be_empty, unasked);
+    Checkpoint never_stops;
+    validate(scene, file, may_be_empty, never_stops);
 }
 
 void SceneChecks::check(const Assembly& scene, const std::string& file, const KeepGoing& keep_going) {
@@ -244,16 +247,16 @@ void SceneChecks::check(const Assembly& scene, const std::string& file, const Ke
 }
 
 void SceneChecks::check_parts(const Assembly& scene, const std::string& file, Checkpoint& checkpoint) const {
-    std::set<const Scene*> good{last_.static_geometry.get()};
-    for (const Instance& instance : last_.instances) good.insert(instance.object.get());
+    std::set<const Scene*> checked{last_.static_geometry.get()};
+    for (const Instance& instance : last_.instances) checked.insert(instance.object.get());
     // Geometry that was valid as an object may be invalid as a whole scene: it may have no triangles.
-    if (good.insert(scene.static_geometry.get()).second || scene.instances.empty())
+    if (checked.insert(scene.static_geometry.get()).second || scene.instances.empty())
         validate(*scene.static_geometry, file, !scene.instances.empty(), checkpoint);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         checkpoint.pass();
         const Scene* const object = scene.instances[i].object.get();
         if (!object) throw InputError(label(scene, i) + " has no object");
-        if (good.insert(object).second) validate(*object, file, true, checkpoint);
+        if (checked.insert(object).second) validate(*object, file, true, checkpoint);
     }
 }
 

@@ -11,20 +11,22 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// True if all coordinates are finite; in_reach also requires them to be small enough to be rendered (metres).
+/// True if all coordinates are finite.
 inline bool is_finite(Vec3d p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
+/// True if all coordinates, in metres, are finite and at most 1e12 m, so that the point can be rendered.
 bool in_reach(Vec3d p_m);
 
-/// Error text for coordinates, in the file's units, that are not in reach.
-std::string why_out_of_reach(Vec3d p);
+/// Returns the error text for coordinates, in the file's units, for which in_reach is false.
+std::string coordinates_error(Vec3d p);
 
 /// Checks everything that a renderer relies on: list sizes, indices, finite numbers, no negative light or reflectance.
 /// Throws SceneFileError if there is no triangle or if `file`, for the message, is not empty, and InputError otherwise;
 /// the message names the element, counted from 0. `may_be_empty`: accepts geometry without triangles, such as an object
 /// of point lights or the static geometry of a scene of instances. Throws Cancelled if `checkpoint` does.
 void validate(const Scene& scene, const std::string& file, bool may_be_empty, Checkpoint& checkpoint);
+/// The same without a way to stop it.
 void validate(const Scene& scene, const std::string& file = {}, bool may_be_empty = false);
 
 /// Incremental validation of successive scenes: static geometry, objects and transforms, skipping all parts of the
@@ -35,13 +37,14 @@ public:
     void check(const Assembly& scene, const std::string& file = {}, const KeepGoing& keep_going = {});
 
 private:
+    /// Checks the static geometry and the objects, except for those of the previous scene.
     void check_parts(const Assembly& scene, const std::string& file, Checkpoint& checkpoint) const;
 
-    Assembly last_;
+    Assembly last_;  ///< the previous valid scene
 };
 
-/// True for a triangle with an area below (1 nm)^2 or a height below 1e-12 of its longest edge. Its indices must be in
-/// range.
+/// True for a triangle in metres with an area below (1 nm)^2 or a height below 1e-12 of its longest edge. Its indices
+/// must be in range.
 bool is_degenerate(const Scene& scene, const Triangle& triangle);
 
 /// Removes degenerate triangles and returns their number.

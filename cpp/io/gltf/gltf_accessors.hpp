@@ -7,19 +7,30 @@
 
 namespace realcam::io {
 
+/// Values of an accessor's componentType.
+enum GltfComponentType : std::size_t {
+    kGltfByte = 5120,
+    kGltfUnsignedByte = 5121,
+    kGltfShort = 5122,
+    kGltfUnsignedShort = 5123,
+    kGltfUnsignedInt = 5125,
+    kGltfFloat = 5126
+};
+
 /// Reads the numbers of a glTF's accessors: of any component type, with normalised integers converted to fractions and
 /// sparse accessors assembled.
 class GltfAccessors {
 public:
-    /// All arguments have to outlive the object.
+    /// All arguments must outlive the object.
     GltfAccessors(const GltfDocument& document, GltfBuffers& buffers, Checkpoint& checkpoint)
         : document_(document), buffers_(buffers), checkpoint_(checkpoint) {}
 
-    /// Returns all elements, one after the other: three numbers each for `type` "VEC3". Throws SceneFileError, which
-    /// begins with `where`, if the accessor or its bytes do not exist or if it is of another type.
+    /// Returns all elements of an accessor, one after the other: three numbers each for `type` "VEC3". `reference`:
+    /// JSON number with the accessor's index. Throws SceneFileError, whose message begins with `where`, if the accessor
+    /// or its bytes do not exist or if it is of another type.
     std::vector<float> numbers(const Json& reference, const std::string& type, const std::string& where);
 
-    /// Returns all elements as whole numbers; accessors of floats are an error.
+    /// Returns all elements as whole numbers, like numbers(). Throws SceneFileError also for an accessor of floats.
     std::vector<std::uint32_t> integers(const Json& reference, const std::string& type, const std::string& where);
 
     /// Returns the number of elements that an accessor declares; 0 if it does not exist.
@@ -28,6 +39,7 @@ public:
 private:
     template <class Value>
     std::vector<Value> read(const Json& reference, const std::string& type, const std::string& where);
+    /// Replaces the elements that a sparse accessor lists.
     template <class Value>
     void read_sparse(const Json& accessor, std::size_t components, const std::string& where,
                      std::vector<Value>& values);

@@ -13,22 +13,23 @@
 namespace realcam::io {
 namespace {
 
+/// Reads the file's first animation.
 class AnimationReader {
 public:
     AnimationReader(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
-                    const std::vector<std::size_t>& numbers, Checkpoint& checkpoint)
+                    const std::vector<std::size_t>& file_indices, Checkpoint& checkpoint)
         : scene_(scene),
           document_(document),
           accessors_(accessors),
           animation_(document.root()["animations"][std::size_t{0}]),
           label_(gltf_label("animation", 0, animation_)),
           checkpoint_(checkpoint) {
-        for (std::size_t i = 0; i < numbers.size(); ++i) node_index_[numbers[i]] = i;
+        for (std::size_t i = 0; i < file_indices.size(); ++i) node_index_[file_indices[i]] = i;
     }
 
     void read() {
         const Json& channels = animation_["channels"];
-        std::size_t others = 0, weights = 0, fixed = 0;
+        std::size_t other_paths = 0, weights = 0, with_matrix = 0;  // numbers of channels that are not supported
         for (std::size_t c = 0; c < channels.size(); ++c) {
             checkpoint_.pass();
             const Json& target = channels[c]["target"];
@@ -39,29 +40,30 @@ public:
             if (path == "weights") {
                 ++weights;
             } else if (path != "translation" && path != "rotation" && path != "scale") {
-                ++others;
+                ++other_paths;
             } else if (!document_.root()["nodes"][*node]["matrix"].is_null()) {
-                ++fixed;
+                ++with_matrix;
             } else {
-                move(*node, path, keys_of(channels[c]["sampler"], path == "rotation" ? 4 : 3, where));
+                set_keys(*node, path, keys_of(channels[c]["sampler"], path == "rotation" ? 4 : 3, where));
             }
         }
-        let_stand();
-        warn(weights, "channels change the weights of morph targets, which stand as they are");
-        warn(others, "channels animate something else than translation, rotation and scale");
-        warn(fixed, "channels animate nodes that have a matrix, which stand as they are");
+        remove_constant_motions();
+        warn(weights, "channels animate the weights of morph targets, which remain constant");
+        warn(other_paths, "channels animate something else than translation, rotation and scale");
+        warn(with_matrix, "channels animate nodes that have a matrix, which remain static");
     }
 
 private:
-    void warn(std::size_t count, const std::string& what) {
-        if (count > 0) scene_.warnings.push_back(label_ + ": " + std::to_string(count) + ' ' + what);
+    void warn(std::size_t count, const std::string& problem) {
+        if (count > 0) scene_.warnings.push_back(label_ + ": " + std::to_string(count) + ' ' + problem);
     }
 
-    void move(std::size_t number, const std::string& path, std::shared_ptr<const FileKeys> keys) {
-        FileNode& node = scene_.nodes[node_index_[number]];
+    /// Animates a node. `index`: of the node in the file; `path`: translation, rotation or scale.
+    void set_keys(std::size_t index, const std::string& path, std::shared_ptr<const FileKeys> keys) {
+        FileNode& node = scene_.nodes[node_index_[index]];
         if (node.motion < 0) {
             node.motion = static_cast<std::int32_t>(scene_.motions.size());
-            scene_.motions.push_back(standing(document_.root()["nodes"][number]));
+            scene_.motions.push_back(static_motion(document_.root()["nodes"][index]));
         }
         FileMotion& motion = scene_.motions[static_cast<std::size_t>(node.motion)];
         (path == "translation" ? motion.translation_keys
@@ -70,7 +72,7 @@ private:
     }
 
     /// Removes motions that are constant: many programs write keys for every node, also for those that never move.
-    void let_stand() {
+    void remove_constant_motions() {
         for (FileNode& node : scene_.nodes) {
             if (node.motion < 0) continue;
             checkpoint_.pass();
@@ -82,27 +84,29 @@ private:
         }
     }
 
+    /// True if keys are not constant.
     bool changes(const std::shared_ptr<const FileKeys>& keys) {
         if (!keys) return false;
         const auto [known, is_new] = changes_.try_emplace(keys.get());
         if (!is_new) return known->second;
         const bool is_spline = keys->interpolation == KeyInterpolation::cubic_spline;
-        const std::size_t columns = keys->components, rows = keys->values.size() / columns;
-        for (std::size_t row = 0; row < rows; ++row)
-            for (std::size_t c = 0; c < columns; ++c) {
-                const bool is_tangent = is_spline && row % 3 != 1;
-                const float stays = is_tangent ? 0 : keys->values[(is_spline ? 1 : 0) * columns + c];
-                if (keys->values[row * columns + c] != stays) known->second = true;
+        const std::size_t components = keys->components, vectors = keys->values.size() / components;
+        for (std::size_t i = 0; i < vectors; ++i)
+            for (std::size_t c = 0; c < components; ++c) {
+                const bool is_tangent = is_spline && i % 3 != 1;
+                const float if_constant = is_tangent ? 0 : keys->values[(is_spline ? 1 : 0) * components + c];
+                if (keys->values[i * components + c] != if_constant) known->second = true;
             }
         return known->second;
     }
 
+    /// Returns the keys of a sampler, which is read on first use.
     std::shared_ptr<const FileKeys> keys_of(const Json& reference, std::size_t components, const std::string& where) {
         const Json& samplers = animation_["samplers"];
-        const std::size_t number = reference.index(samplers.size());
-        if (number >= samplers.size()) document_.fail(where + ": its sampler does not exist");
-        const auto [known, is_new] = read_.try_emplace({number, components});
-        if (is_new) known->second = read_sampler(samplers[number], components, where);
+        const std::size_t index = reference.index(samplers.size());
+        if (index >= samplers.size()) document_.fail(where + ": its sampler does not exist");
+        const auto [known, is_new] = samplers_.try_emplace({index, components});
+        if (is_new) known->second = read_sampler(samplers[index], components, where);
         return known->second;
     }
 
@@ -123,17 +127,17 @@ private:
             const auto seconds = static_cast<double>(time);
             if (!(std::fabs(seconds) <= kMostSeconds)) document_.fail(where + ": a time must lie within 1e9 s");
             if (!keys->times.empty() && !(keys->times.back() < seconds))
-                document_.fail(where + ": its times must rise");
+                document_.fail(where + ": its times must be strictly increasing");
             keys->times.push_back(seconds);
         }
         keys->values = accessors_.numbers(sampler["output"], components == 4 ? "VEC4" : "VEC3", where + ": its output");
         for (const float value : keys->values)
             if (!std::isfinite(value)) document_.fail(where + ": its output holds a number that is not finite");
-        const std::size_t each = keys->interpolation == KeyInterpolation::cubic_spline ? 3 : 1;
-        if (keys->times.empty() || keys->values.size() != keys->times.size() * each * components)
+        const std::size_t values_per_time = keys->interpolation == KeyInterpolation::cubic_spline ? 3 : 1;
+        if (keys->times.empty() || keys->values.size() != keys->times.size() * values_per_time * components)
             document_.fail(where + ": has " + std::to_string(keys->times.size()) + " times and " +
                            std::to_string(keys->values.size() / components) + " values; expected " +
-                           std::to_string(each) + " for each time");
+                           std::to_string(values_per_time) + " for each time");
         return keys;
     }
 
@@ -144,21 +148,21 @@ private:
     std::string label_;
     Checkpoint& checkpoint_;
     std::map<std::size_t, std::size_t> node_index_;  ///< index in the scene of each node of the file
-    /// Keyed by sampler and components.
-    std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<const FileKeys>> read_;
-    std::map<const FileKeys*, bool> changes_;
+    /// Keys that have been read, by index of the sampler and number of components.
+    std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<const FileKeys>> samplers_;
+    std::map<const FileKeys*, bool> changes_;  ///< results of changes()
 };
 
 }  // namespace
 
 void read_gltf_animations(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
-                          const std::vector<std::size_t>& numbers, Checkpoint& checkpoint) {
+                          const std::vector<std::size_t>& file_indices, Checkpoint& checkpoint) {
     const std::size_t count = document.root()["animations"].size();
     if (count == 0) return;
-    AnimationReader(scene, document, accessors, numbers, checkpoint).read();
+    AnimationReader(scene, document, accessors, file_indices, checkpoint).read();
     if (count > 1) scene.warnings.push_back("of " + std::to_string(count) + " animations only the first is played");
     if (document.root()["skins"].size() > 0 && !scene.motions.empty())
-        scene.warnings.push_back("skins do not follow the animation; they stand as their joints do without it");
+        scene.warnings.push_back("skins are not animated; they have the pose of their joints without the animation");
 }
 
 }  // namespace realcam::io

@@ -11,12 +11,12 @@
 
 namespace realcam::io {
 
-std::string GltfBuffers::read_buffer(std::size_t number, std::size_t size) {
-    const std::string& uri = document_.root()["buffers"][number]["uri"].text();
-    const std::string label = "buffer " + std::to_string(number);
+std::string GltfBuffers::read_buffer(std::size_t index, std::size_t size) {
+    const std::string& uri = document_.root()["buffers"][index]["uri"].text();
+    const std::string label = "buffer " + std::to_string(index);
     if (is_data_uri(uri)) {
         std::optional<std::string> data = data_of_uri(uri);
-        if (!data) document_.fail(label + ": its data: address is no base64");
+        if (!data) document_.fail(label + ": its data: address is not valid base64");
         return std::move(*data);
     }
     const std::optional<std::string> file = find_beside(document_.path(), uri);
@@ -30,38 +30,38 @@ std::string GltfBuffers::read_buffer(std::size_t number, std::size_t size) {
     }
 }
 
-std::string_view GltfBuffers::buffer(std::size_t number) {
-    const Json& buffer = document_.root()["buffers"][number];
+std::string_view GltfBuffers::buffer(std::size_t index) {
+    const Json& buffer = document_.root()["buffers"][index];
     const std::size_t size = buffer["byteLength"].index(0);
     std::string_view bytes = document_.binary_chunk();
-    if (!buffer["uri"].is_null() || number != 0 || bytes.empty()) {
-        auto found = read_.find(number);
-        if (found == read_.end()) found = read_.emplace(number, read_buffer(number, size)).first;
+    if (!buffer["uri"].is_null() || index != 0 || bytes.empty()) {
+        auto found = read_.find(index);
+        if (found == read_.end()) found = read_.emplace(index, read_buffer(index, size)).first;
         bytes = found->second;
     }
     if (bytes.size() < size)
-        document_.fail("buffer " + std::to_string(number) + ": is cut short: " + std::to_string(bytes.size()) + " of " +
+        document_.fail("buffer " + std::to_string(index) + ": is cut short: " + std::to_string(bytes.size()) + " of " +
                        std::to_string(size) + " bytes");
     return bytes.substr(0, size);
 }
 
 std::string_view GltfBuffers::view(const Json& reference, const std::string& where) {
-    const std::optional<std::size_t> number = document_.find("bufferViews", reference, where);
-    if (!number) document_.fail(where + ": names no bufferView");
-    const Json& view = document_.root()["bufferViews"][*number];
+    const std::optional<std::size_t> index = document_.find("bufferViews", reference, where);
+    if (!index) document_.fail(where + ": names no bufferView");
+    const Json& view = document_.root()["bufferViews"][*index];
     for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
         const Json& buffers = document_.root()["buffers"];
         const Json& buffer = buffers[view["buffer"].index(buffers.size())];
-        // There may be uncompressed bytes beside the compressed ones. If not, the buffer is only declared.
-        const bool has_plain = !buffer["uri"].is_null() || buffer["extensions"][extension].is_null();
-        if (!view["extensions"][extension].is_null() && !has_plain)
+        // There may be uncompressed bytes beside the compressed ones; otherwise the buffer is only declared.
+        const bool has_uncompressed = !buffer["uri"].is_null() || buffer["extensions"][extension].is_null();
+        if (!view["extensions"][extension].is_null() && !has_uncompressed)
             document_.fail(where + ": its numbers are in the glTF extension " + extension +
                            ", which is not read; export it without compression");
     }
-    const std::string label = where + ": bufferView " + std::to_string(*number);
-    const std::optional<std::size_t> buffer_number = document_.find("buffers", view["buffer"], label);
-    if (!buffer_number) document_.fail(label + ": names no buffer");
-    const std::string_view bytes = buffer(*buffer_number);
+    const std::string label = where + ": bufferView " + std::to_string(*index);
+    const std::optional<std::size_t> buffer_index = document_.find("buffers", view["buffer"], label);
+    if (!buffer_index) document_.fail(label + ": names no buffer");
+    const std::string_view bytes = buffer(*buffer_index);
     const std::size_t offset = view["byteOffset"].index(0), size = view["byteLength"].index(0);
     if (offset > bytes.size() || size > bytes.size() - offset)
         document_.fail(label + ": reaches beyond the " + std::to_string(bytes.size()) + " bytes of its buffer");
@@ -70,16 +70,18 @@ std::string_view GltfBuffers::view(const Json& reference, const std::string& whe
 
 namespace {
 
-std::string bytes_of(const Json& image, GltfBuffers& buffers, std::size_t number) {
+/// Returns the encoded bytes of an embedded image; empty if they cannot be read.
+std::string bytes_of(const Json& image, GltfBuffers& buffers, std::size_t index) {
     const std::string& uri = image["uri"].text();
     if (is_data_uri(uri)) return data_of_uri(uri).value_or("");
     try {
-        return std::string(buffers.view(image["bufferView"], "image " + std::to_string(number)));
+        return std::string(buffers.view(image["bufferView"], "image " + std::to_string(index)));
     } catch (const SceneFileError&) {
-        return {};  // leads to a stand-in and a warning, as for any missing picture
+        return {};  // leads to a checker pattern and a warning, as for any missing picture
     }
 }
 
+/// Returns, for each material, true if a mesh has it. All triangles of a glTF primitive have the same material.
 std::vector<bool> used_materials(const FileScene& scene) {
     std::vector<bool> is_used(scene.materials.size(), false);
     for (const FileMesh& mesh : scene.meshes)
@@ -94,7 +96,7 @@ void list_pictures(FileScene& scene, const GltfDocument& document) {
     for (std::size_t i = 0; i < images.size(); ++i) {
         const std::string& uri = images[i]["uri"].text();
         if (uri.empty() || is_data_uri(uri))
-            scene.pictures.push_back({std::to_string(i) + " inside it", true, {}});
+            scene.pictures.push_back({std::to_string(i) + " (embedded)", true, {}});
         else
             scene.pictures.push_back({uri, false, {}});
     }
@@ -108,11 +110,11 @@ void fetch_pictures(FileScene& scene, const GltfDocument& document, GltfBuffers&
         const auto* material = std::get_if<GltfMaterial>(&scene.materials[m].content);
         if (!material || !is_used[m]) continue;
         for (const FileTexture* texture : material->textures()) {
-            const auto number = static_cast<std::size_t>(texture->picture);
-            if (number >= images.size() || is_fetched[number]) continue;
-            is_fetched[number] = true;
-            FilePicture& picture = scene.pictures[number];
-            if (picture.is_inside) picture.bytes = bytes_of(images[number], buffers, number);
+            const auto index = static_cast<std::size_t>(texture->picture);
+            if (index >= images.size() || is_fetched[index]) continue;
+            is_fetched[index] = true;
+            FilePicture& picture = scene.pictures[index];
+            if (picture.is_embedded) picture.bytes = bytes_of(images[index], buffers, index);
         }
     }
 }

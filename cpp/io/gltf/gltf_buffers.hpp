@@ -10,19 +10,22 @@ namespace realcam::io {
 /// Bytes of a glTF: from its .glb, from data: URIs, and from files beside it, each read on first use.
 class GltfBuffers {
 public:
-    /// Both arguments have to outlive the object.
+    /// Both arguments must outlive the object.
     GltfBuffers(const GltfDocument& document, Checkpoint& checkpoint) : document_(document), checkpoint_(checkpoint) {}
 
-    /// Returns all bytes of a buffer view. Throws SceneFileError, which begins with `where`, if the buffer has fewer.
+    /// Returns all bytes of a buffer view. `reference`: JSON number with its index. Throws SceneFileError, whose
+    /// message begins with `where`, if the view does not exist or the buffer has fewer bytes.
     std::string_view view(const Json& reference, const std::string& where);
 
 private:
-    std::string_view buffer(std::size_t number);
-    std::string read_buffer(std::size_t number, std::size_t size);
+    /// Returns the bytes of a buffer.
+    std::string_view buffer(std::size_t index);
+    /// Reads a buffer of `size` bytes from a data: URI or a file.
+    std::string read_buffer(std::size_t index, std::size_t size);
 
     const GltfDocument& document_;
     Checkpoint& checkpoint_;
-    std::map<std::size_t, std::string> read_;
+    std::map<std::size_t, std::string> read_;  ///< buffers that have been read, by index
 };
 
 }  // namespace realcam::io

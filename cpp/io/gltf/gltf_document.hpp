@@ -11,11 +11,12 @@ namespace realcam::io {
 /// JSON of a .gltf or .glb, and the binary chunk of a .glb.
 class GltfDocument {
 public:
-    /// Reads the file. Throws FileError, and SceneFileError if it is not valid JSON or requires an unsupported
+    /// Reads the file. Throws FileError, and SceneFileError if it is not valid glTF 2.0 or requires an unsupported
     /// extension.
     GltfDocument(const std::string& path, Checkpoint& checkpoint);
 
     const std::string& path() const { return path_; }
+    /// The whole JSON object.
     const Json& root() const { return root_; }
     /// Returns the binary chunk of a .glb; empty if there is no such chunk.
     std::string_view binary_chunk() const {
@@ -25,20 +26,22 @@ public:
     /// Throws SceneFileError "PATH: message".
     [[noreturn]] void fail(const std::string& message) const;
 
-    /// Returns the index that `reference` gives in a list of the root; std::nullopt if there is no reference. Throws
-    /// SceneFileError, which begins with `where`, if there is no such element.
+    /// Returns the index that a reference, a JSON number, specifies in a list of the root, such as "meshes";
+    /// std::nullopt if `reference` is null. Throws SceneFileError, whose message begins with `where`, if there is no
+    /// such element.
     std::optional<std::size_t> find(const char* list, const Json& reference, const std::string& where) const;
 
 private:
+    /// Returns the JSON text of the file and sets the range of the binary chunk.
     std::string_view json_text();
 
     std::string path_;
-    std::string file_;
-    std::size_t binary_begin_ = 0, binary_size_ = 0;
+    std::string file_;  ///< the file's bytes; empty if it has no binary chunk
+    std::size_t binary_begin_ = 0, binary_size_ = 0;  ///< range of the binary chunk in file_
     Json root_;
 };
 
-/// Returns the name of an element for messages: "mesh 3", followed by its own name if it has one.
-std::string gltf_label(const std::string& kind, std::size_t number, const Json& element);
+/// Returns the label of an element for messages: kind and index, as "mesh 3", followed by its name if it has one.
+std::string gltf_label(const std::string& kind, std::size_t index, const Json& element);
 
 }  // namespace realcam::io

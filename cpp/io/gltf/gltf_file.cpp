@@ -11,34 +11,35 @@ namespace realcam::io {
 namespace {
 
 /// Checks the memory for meshes that nodes deform individually: a file of a megabyte may have twenty thousand of them.
-void check_own_meshes(const FileScene& scene, const GltfDocument& document, GltfMeshes& meshes,
-                      const GltfNodeNumbers& numbers) {
+void check_deformed_meshes(const FileScene& scene, const GltfDocument& document, GltfMeshes& meshes,
+                           const GltfNodeIndices& file_indices) {
     double bytes = 0;
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-        const Json& node = document.root()["nodes"][numbers.meshes[i]];
+        const Json& node = document.root()["nodes"][file_indices.meshes[i]];
         const std::size_t count = document.root()["meshes"].size(), mesh = node["mesh"].index(count);
         const bool is_skinned = !node["skin"].is_null();
-        if (mesh < count && (is_skinned || !node["weights"].is_null())) bytes += meshes.bytes_of_own(mesh, is_skinned);
+        if (mesh < count && (is_skinned || !node["weights"].is_null()))
+            bytes += meshes.deformed_bytes(mesh, is_skinned);
     }
-    meshes.check_promise(bytes);
+    meshes.check_deformed_bytes(bytes);
 }
 
 /// Adds the meshes of all nodes. Skins of nodes whose transform has no inverse are left out, with a warning.
 void add_meshes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
-                const GltfNodeNumbers& numbers, Checkpoint& checkpoint) {
-    const GltfSkins skins(document, accessors, scene, numbers.nodes, checkpoint);
+                const GltfNodeIndices& file_indices, Checkpoint& checkpoint) {
+    const GltfSkins skins(document, accessors, scene, file_indices.nodes, checkpoint);
     GltfMeshes meshes(document, accessors, scene, checkpoint);
-    check_own_meshes(scene, document, meshes, numbers);
-    std::size_t left_out = 0;
+    check_deformed_meshes(scene, document, meshes, file_indices);
+    std::size_t left_out = 0;  // number of skins
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-        if (numbers.meshes[i] == kNoGltfNode) continue;
-        const Json& node = document.root()["nodes"][numbers.meshes[i]];
-        const std::string label = gltf_label("node", numbers.meshes[i], node);
+        if (file_indices.meshes[i] == kNoGltfNode) continue;
+        const Json& node = document.root()["nodes"][file_indices.meshes[i]];
+        const std::string label = gltf_label("node", file_indices.meshes[i], node);
         const std::optional<std::size_t> mesh = document.find("meshes", node["mesh"], label + ": its mesh");
         if (!mesh) continue;
         std::optional<JointMaps> joints;
         // Instances have no skin: the extension does not define how it would deform them.
-        const bool is_instance = numbers.nodes[i] == kNoGltfNode;
+        const bool is_instance = file_indices.nodes[i] == kNoGltfNode;
         const auto skin = is_instance ? std::nullopt : document.find("skins", node["skin"], label + ": its skin");
         if (skin) {
             joints = skins.joint_maps(*skin, i);
@@ -49,7 +50,7 @@ void add_meshes(FileScene& scene, const GltfDocument& document, GltfAccessors& a
         scene.nodes[i].mesh_count = range.count;
     }
     if (left_out > 0)
-        scene.warnings.push_back(std::to_string(left_out) + " skins are left out: their nodes are scaled to nothing");
+        scene.warnings.push_back(std::to_string(left_out) + " skins are left out: their nodes are scaled to zero");
 }
 
 }  // namespace
@@ -65,9 +66,9 @@ FileScene read_gltf(const std::string& path, Checkpoint& checkpoint) {
     list_pictures(scene, document);
     read_gltf_materials(scene, document);
     warn_of_extensions(scene, document);
-    const GltfNodeNumbers numbers = lay_out_nodes(scene, document, accessors, checkpoint);
-    add_meshes(scene, document, accessors, numbers, checkpoint);
-    read_gltf_animations(scene, document, accessors, numbers.nodes, checkpoint);
+    const GltfNodeIndices file_indices = read_gltf_nodes(scene, document, accessors, checkpoint);
+    add_meshes(scene, document, accessors, file_indices, checkpoint);
+    read_gltf_animations(scene, document, accessors, file_indices.nodes, checkpoint);
     fetch_pictures(scene, document, buffers);
     return scene;
 }

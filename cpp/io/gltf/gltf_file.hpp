@@ -6,8 +6,8 @@
 
 namespace realcam::io {
 
-/// Reads a glTF 2.0 file (.gltf or .glb) in the pose of its nodes: skins and morph targets are applied. Nodes are
-/// animated by the first animation. Throws FileError, and SceneFileError that names the element.
+/// Reads a glTF 2.0 file (.gltf or .glb). Skins and morph targets are applied for the static pose of the nodes; nodes
+/// are animated by the file's first animation. Throws FileError, and SceneFileError that names the element.
 FileScene read_gltf(const std::string& path, Checkpoint& checkpoint);
 
 }  // namespace realcam::io

@@ -11,16 +11,19 @@
 namespace realcam::io {
 namespace {
 
+/// Range of valid numbers.
 struct Range {
-    double least, most;
+    double min, max;
 };
 constexpr double kLargest = std::numeric_limits<float>::max();
 constexpr Range kUnit{0, 1}, kNotNegative{0, kLargest}, kAny{-kLargest, kLargest};
 
+/// Parses the materials of a file. Its read functions leave a value, `out`, unchanged if the JSON element is missing.
 class MaterialParser {
 public:
     MaterialParser(FileScene& scene, const Json& root) : scene_(scene), root_(root) {}
 
+    /// Parses one element of "materials".
     GltfMaterial parse(const Json& json) {
         GltfMaterial out;
         read_metallic_roughness(out, json["pbrMetallicRoughness"]);
@@ -32,29 +35,29 @@ public:
         read_clearcoat(out.clearcoat, extensions["KHR_materials_clearcoat"]);
         read_specular(out.specular, extensions["KHR_materials_specular"]);
         read_ior(out.ior, extensions["KHR_materials_ior"]["ior"]);
-        read_free(out.emissive_strength, extensions["KHR_materials_emissive_strength"]["emissiveStrength"]);
+        read_unchecked(out.emissive_strength, extensions["KHR_materials_emissive_strength"]["emissiveStrength"]);
         out.unlit = !extensions["KHR_materials_unlit"].is_null();
         has_occlusion_ |= bool(out.occlusion_texture);
-        number_uv_sets(out);
+        collect_uv_sets(out);
         return out;
     }
 
-    /// Adds warnings for values that are wrong or not modelled in any of the materials.
-    void tell() const {
+    /// Adds warnings for invalid or unsupported values in any of the materials.
+    void add_warnings() const {
         const auto warn = [&](std::size_t count, const std::string& text) {
             if (count > 0) scene_.warnings.push_back(std::to_string(count) + ' ' + text);
         };
-        warn(out_of_range_, "numbers of its materials are out of their range; the nearest within is taken");
-        warn(bad_samplers_, "wrap modes or filters of samplers are none; REPEAT and LINEAR are taken");
-        warn(bad_transforms_, "transforms of textures are no finite numbers; they are left out");
+        warn(out_of_range_, "numbers of its materials are out of their range; the nearest number in the range is used");
+        warn(bad_samplers_, "wrap modes or filters of samplers are invalid; REPEAT and LINEAR are used");
+        warn(bad_transforms_, "texture transforms are not finite; they are left out");
         if (!bad_alpha_mode_.empty())
-            scene_.warnings.push_back("an alphaMode is OPAQUE, MASK or BLEND, not " + bad_alpha_mode_ +
-                                      "; OPAQUE is taken");
+            scene_.warnings.push_back("an alphaMode must be OPAQUE, MASK or BLEND, not " + bad_alpha_mode_ +
+                                      "; OPAQUE is used");
         if (has_occlusion_)
-            scene_.warnings.push_back("occlusionTexture is not modelled: the paths of light find what is hidden");
+            scene_.warnings.push_back("occlusionTexture is not modelled: path tracing computes the occlusion");
         if (has_third_set_)
             scene_.warnings.push_back(
-                "a third set of texture coordinates in one material is not modelled; its textures lie by the first");
+                "a third set of texture coordinates in one material is not modelled; its textures use the first set");
     }
 
 private:
@@ -67,14 +70,15 @@ private:
         read(out.metallic_roughness_texture, json["metallicRoughnessTexture"]);
     }
 
+    /// Reads the properties of both reflection models.
     void read_common(GltfMaterial& out, const Json& json) {
         read(out.normal_texture, json["normalTexture"]);
         read(out.normal_scale, json["normalTexture"]["scale"], kAny);
         read(out.occlusion_texture, json["occlusionTexture"]);
         read(out.occlusion_strength, json["occlusionTexture"]["strength"], kUnit);
-        read_free(out.emissive_factor.x, json["emissiveFactor"][std::size_t{0}]);
-        read_free(out.emissive_factor.y, json["emissiveFactor"][1]);
-        read_free(out.emissive_factor.z, json["emissiveFactor"][2]);
+        read_unchecked(out.emissive_factor.x, json["emissiveFactor"][std::size_t{0}]);
+        read_unchecked(out.emissive_factor.y, json["emissiveFactor"][1]);
+        read_unchecked(out.emissive_factor.z, json["emissiveFactor"][2]);
         read(out.emissive_texture, json["emissiveTexture"]);
         read(out.alpha_mode, json["alphaMode"]);
         read(out.alpha_cutoff, json["alphaCutoff"], kNotNegative);
@@ -105,8 +109,8 @@ private:
         // Some programs write 0 for no attenuation; taken literally, no light would pass.
         const bool is_positive = distance.number(1) > 0;
         if (!is_positive) ++out_of_range_;
-        constexpr double infinite = std::numeric_limits<double>::infinity();
-        if (is_positive) read(out.attenuation_distance, distance, {std::numeric_limits<float>::min(), infinite});
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        if (is_positive) read(out.attenuation_distance, distance, {std::numeric_limits<float>::min(), kInfinity});
     }
 
     void read_clearcoat(GltfClearcoat& out, const Json& json) {
@@ -125,6 +129,7 @@ private:
         read(out.color_texture, json["specularColorTexture"]);
     }
 
+    /// Reads an index of refraction: 0, or at least 1 (GltfMaterial::ior).
     void read_ior(float& out, const Json& json) {
         if (json.number(1) == 0)
             out = 0;
@@ -134,9 +139,9 @@ private:
 
     void read(float& out, const Json& json, Range range) {
         const double value = json.number(static_cast<double>(out));
-        const double within = std::clamp(value, range.least, range.most);
-        if (within != value) ++out_of_range_;
-        out = static_cast<float>(within);
+        const double clamped = std::clamp(value, range.min, range.max);
+        if (clamped != value) ++out_of_range_;
+        out = static_cast<float>(clamped);
     }
 
     void read(Vec3f& out, const Json& json, Range range) {
@@ -145,7 +150,8 @@ private:
         read(out.z, json[2], range);
     }
 
-    static void read_free(float& out, const Json& json) {
+    /// Reads a number of any size, which is checked later for all formats.
+    static void read_unchecked(float& out, const Json& json) {
         out = static_cast<float>(json.number(static_cast<double>(out)));
     }
 
@@ -160,14 +166,14 @@ private:
     /// Reads a texture reference. `info`: glTF's textureInfo; null if there is no texture.
     void read(FileTexture& out, const Json& info) {
         if (info.is_null()) return;
-        const Json& moved = info["extensions"]["KHR_texture_transform"];
-        const Json &scale = moved["scale"], &offset = moved["offset"];
-        const Json& set = moved["texCoord"].is_number() ? moved["texCoord"] : info["texCoord"];
+        const Json& json_transform = info["extensions"]["KHR_texture_transform"];
+        const Json &scale = json_transform["scale"], &offset = json_transform["offset"];
+        const Json& set = json_transform["texCoord"].is_number() ? json_transform["texCoord"] : info["texCoord"];
         out.picture = picture_of(info["index"]);
         out.sampler = sampler_of(info["index"]);
         out.uv_set = static_cast<std::uint32_t>(std::min<std::size_t>(set.index(0), 0xffff));
         const TextureTransform transform(scale[std::size_t{0}].number(1), scale[1].number(1),
-                                         moved["rotation"].number(0), offset[std::size_t{0}].number(0),
+                                         json_transform["rotation"].number(0), offset[std::size_t{0}].number(0),
                                          offset[1].number(0));
         if (transform.is_finite())
             out.transform = transform;
@@ -178,8 +184,8 @@ private:
     /// Returns the wrap modes and the magnification filter of a texture. Minification filters are ignored: the renderer
     /// has its own.
     TextureSampler sampler_of(const Json& texture) {
-        const Json& number = root_["textures"][texture.index(root_["textures"].size())]["sampler"];
-        const Json& sampler = root_["samplers"][number.index(root_["samplers"].size())];
+        const Json& reference = root_["textures"][texture.index(root_["textures"].size())]["sampler"];
+        const Json& sampler = root_["samplers"][reference.index(root_["samplers"].size())];
         enum : std::size_t { kNearest = 9728, kLinear = 9729, kClamp = 33071, kMirror = 33648, kRepeat = 10497 };
         const auto wrap = [&](const Json& json) {
             const std::size_t code = json.is_null() ? std::size_t{kRepeat} : json.index(0);
@@ -192,14 +198,14 @@ private:
                 filter == kNearest ? TextureFilter::nearest : TextureFilter::linear};
     }
 
-    /// Returns the index of a texture's picture. A texture without a picture gets one without bytes, which causes a
-    /// warning and a stand-in that is easily seen.
+    /// Returns the index of a texture's picture. A texture without a picture gets one without bytes, which becomes a
+    /// checker pattern with a warning.
     std::int32_t picture_of(const Json& texture) {
         const Json& found = root_["textures"][texture.index(root_["textures"].size())];
         const Json& source =
             found["source"].is_null() ? found["extensions"]["EXT_texture_webp"]["source"] : found["source"];
-        const std::size_t images = root_["images"].size(), number = source.index(images);
-        if (number < images) return first_alike(number);
+        const std::size_t images = root_["images"].size(), image = source.index(images);
+        if (image < images) return first_alike(image);
         if (missing_ < 0) {
             missing_ = static_cast<std::int32_t>(scene_.pictures.size());
             scene_.pictures.push_back({"without a picture", true, {}});
@@ -209,28 +215,29 @@ private:
 
     /// Returns the first image with the same bytes, so that images which share a bufferView are decoded once.
     std::int32_t first_alike(std::size_t image) {
-        const auto number = static_cast<std::int32_t>(image);
+        const auto index = static_cast<std::int32_t>(image);
         const Json& view = root_["images"][image]["bufferView"];
-        return view.is_number() ? first_of_view_.emplace(view.number(0), number).first->second : number;
+        return view.is_number() ? first_of_view_.emplace(view.number(0), index).first->second : index;
     }
 
-    /// Replaces the texture coordinate sets of textures by indices in `uv_sets`, whose sets the meshes will have.
-    void number_uv_sets(GltfMaterial& material) {
+    /// Lists the sets of texture coordinates that the textures use in `uv_sets`, at most two, and replaces the sets of
+    /// the textures by indices in that list.
+    void collect_uv_sets(GltfMaterial& material) {
         std::vector<std::uint32_t>& sets = material.uv_sets;
         for (FileTexture* texture : material.textures()) {
             const auto known = std::find(sets.begin(), sets.end(), texture->uv_set);
-            const auto number = static_cast<std::uint32_t>(known - sets.begin());
+            const auto index = static_cast<std::uint32_t>(known - sets.begin());
             const bool is_third = known == sets.end() && sets.size() == 2;
             if (known == sets.end() && !is_third) sets.push_back(texture->uv_set);
-            texture->uv_set = is_third ? 0 : number;
+            texture->uv_set = is_third ? 0 : index;
             has_third_set_ |= is_third;
         }
     }
 
     FileScene& scene_;
     const Json& root_;
-    std::int32_t missing_ = -1;
-    std::map<double, std::int32_t> first_of_view_;
+    std::int32_t missing_ = -1;  // index of the picture for textures without one
+    std::map<double, std::int32_t> first_of_view_;  // first image of each bufferView
     std::size_t out_of_range_ = 0, bad_transforms_ = 0, bad_samplers_ = 0;
     std::string bad_alpha_mode_;  // the first invalid one, in quotes
     bool has_occlusion_ = false, has_third_set_ = false;
@@ -243,7 +250,7 @@ void read_gltf_materials(FileScene& scene, const GltfDocument& document) {
     const Json& materials = document.root()["materials"];
     for (std::size_t i = 0; i < materials.size(); ++i)
         scene.materials.push_back({materials[i]["name"].text(), parser.parse(materials[i])});
-    parser.tell();
+    parser.add_warnings();
 }
 
 }  // namespace realcam::io

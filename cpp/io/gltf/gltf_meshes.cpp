@@ -13,10 +13,12 @@
 namespace realcam::io {
 namespace {
 
+/// Modes of primitives in glTF; those below kFirstOfTriangles are points and lines.
 enum Mode : std::size_t { kFirstOfTriangles = 4, kTriangles = 4, kStrip = 5, kFan = 6 };
 
 constexpr std::size_t kBytesPerVertex = sizeof(Vec3d) + sizeof(Vec3f) + sizeof(Vec2f);
 
+/// Groups numbers, three at a time, into vectors.
 template <class T>
 std::vector<Vec3<T>> vectors_of(const std::vector<float>& numbers) {
     std::vector<Vec3<T>> out(numbers.size() / 3);
@@ -29,8 +31,8 @@ std::vector<Vec3<T>> vectors_of(const std::vector<float>& numbers) {
 
 GltfMeshes::Range GltfMeshes::add(std::size_t mesh, const Json& node_weights, const std::optional<JointMaps>& joints) {
     const Json& from = document_.root()["meshes"][mesh];
-    const bool is_plain = !joints && node_weights.is_null();
-    if (const auto known = added_.find(mesh); is_plain && known != added_.end()) return known->second;
+    const bool is_undeformed = !joints && node_weights.is_null();
+    if (const auto known = added_.find(mesh); is_undeformed && known != added_.end()) return known->second;
     const Json& primitives = from["primitives"];
     const Range range{static_cast<std::uint32_t>(scene_.meshes.size()), static_cast<std::uint32_t>(primitives.size())};
     for (std::size_t p = 0; p < primitives.size(); ++p) {
@@ -40,13 +42,13 @@ GltfMeshes::Range GltfMeshes::add(std::size_t mesh, const Json& node_weights, co
         add_primitive(
             {primitives[p], node_weights.is_null() ? from["weights"] : node_weights, joints, label, material});
     }
-    if (is_plain) added_.emplace(mesh, range);
+    if (is_undeformed) added_.emplace(mesh, range);
     return range;
 }
 
 std::uint32_t GltfMeshes::material_of(const Json& primitive, const std::string& label) {
-    if (const auto number = document_.find("materials", primitive["material"], label + ": its material"))
-        return static_cast<std::uint32_t>(*number);
+    if (const auto index = document_.find("materials", primitive["material"], label + ": its material"))
+        return static_cast<std::uint32_t>(*index);
     if (!default_material_) {
         default_material_ = static_cast<std::uint32_t>(scene_.materials.size());
         scene_.materials.emplace_back();
@@ -54,8 +56,6 @@ std::uint32_t GltfMeshes::material_of(const Json& primitive, const std::string& 
     return *default_material_;
 }
 
-/// Throws SceneFileError if a primitive exists only in a compressed form: accessors without bytes would be read as 0.
-/// Files may have an uncompressed form in addition.
 void GltfMeshes::check_compression(const Primitive& primitive) const {
     constexpr const char* kDraco = "KHR_draco_mesh_compression";
     if (primitive.json["extensions"][kDraco].is_null()) return;
@@ -78,8 +78,6 @@ void GltfMeshes::add_primitive(const Primitive& primitive) {
     scene_.meshes.push_back(std::move(mesh));
 }
 
-/// Throws SceneFileError if the meshes need more memory than is free: in a file of a megabyte, a thousand meshes may
-/// repeat a million vertices.
 void GltfMeshes::check_memory(const FileMesh& mesh) {
     bytes_ += mesh.triangles.size() * sizeof(Triangle);
     if (mesh.vertices + 1 == scene_.vertices.size())
@@ -90,8 +88,8 @@ void GltfMeshes::check_memory(const FileMesh& mesh) {
     next_check_ = 2 * bytes_;
 }
 
-double GltfMeshes::bytes_of_own(std::size_t mesh, bool is_skinned) {
-    const auto [known, is_new] = own_bytes_.try_emplace({mesh, is_skinned}, 0.0);
+double GltfMeshes::deformed_bytes(std::size_t mesh, bool is_skinned) {
+    const auto [known, is_new] = deformed_bytes_.try_emplace({mesh, is_skinned}, 0.0);
     if (!is_new) return known->second;
     const Json &accessors = document_.root()["accessors"], &primitives = document_.root()["meshes"][mesh]["primitives"];
     const auto count_of = [&](const Json& accessor) {
@@ -111,10 +109,10 @@ double GltfMeshes::bytes_of_own(std::size_t mesh, bool is_skinned) {
     return known->second;
 }
 
-void GltfMeshes::check_promise(double bytes) const {
-    constexpr double kAlwaysThere = 1 << 28, kMost = 1e18;
-    if (bytes < kAlwaysThere) return;
-    if (const std::string why = too_much_memory(static_cast<std::uint64_t>(std::min(bytes, kMost))); !why.empty())
+void GltfMeshes::check_deformed_bytes(double bytes) const {
+    constexpr double kUncheckedBytes = 1 << 28, kMaxBytes = 1e18;
+    if (bytes < kUncheckedBytes) return;
+    if (const std::string why = too_much_memory(static_cast<std::uint64_t>(std::min(bytes, kMaxBytes))); !why.empty())
         document_.fail("its meshes, of which nodes with skins or weights have their own, need " + why);
 }
 
@@ -124,16 +122,16 @@ std::uint32_t GltfMeshes::vertices_of(const Primitive& primitive) {
     const auto uvs_of = [&](std::size_t i) -> const Json& {
         return attributes[i < sets.size() ? "TEXCOORD_" + std::to_string(sets[i]) : ""];
     };
-    constexpr std::size_t none = static_cast<std::size_t>(-1);
-    const Attributes key{attributes["POSITION"].index(none), attributes["NORMAL"].index(none), uvs_of(0).index(none),
-                         uvs_of(1).index(none), attributes["COLOR_0"].index(none)};
+    constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+    const Attributes key{attributes["POSITION"].index(kNone), attributes["NORMAL"].index(kNone), uvs_of(0).index(kNone),
+                         uvs_of(1).index(kNone), attributes["COLOR_0"].index(kNone)};
     const bool may_share = !primitive.joints && primitive.json["targets"].is_null();
     if (const auto known = shared_vertices_.find(key); may_share && known != shared_vertices_.end())
         return known->second;
-    const auto number = static_cast<std::uint32_t>(scene_.vertices.size());
+    const auto index = static_cast<std::uint32_t>(scene_.vertices.size());
     scene_.vertices.push_back(read_vertices(primitive, uvs_of(0), uvs_of(1)));
-    if (may_share) shared_vertices_.emplace(key, number);
-    return number;
+    if (may_share) shared_vertices_.emplace(key, index);
+    return index;
 }
 
 void GltfMeshes::check_count(std::size_t count, std::size_t vertices, const std::string& where) const {
@@ -162,7 +160,7 @@ FileVertices GltfMeshes::read_vertices(const Primitive& primitive, const Json& u
         out.colours = read_colours(attributes["COLOR_0"], label + ": COLOR_0");
         check_count(out.colours.size(), count, label + ": COLOR_0");
     }
-    add_targets(primitive, out);
+    apply_targets(primitive, out);
     if (primitive.joints) {
         const JointWeights weights =
             read_joint_weights(document_, accessors_, attributes, count, primitive.joints->size(), label);
@@ -170,33 +168,33 @@ FileVertices GltfMeshes::read_vertices(const Primitive& primitive, const Json& u
     }
     for (std::size_t v = 0; v < count; ++v) {
         if (!in_reach(out.positions[v]) && !is_finite(out.positions[v]))
-            document_.fail(label + ": vertex " + std::to_string(v) + ": " + why_out_of_reach(out.positions[v]));
+            document_.fail(label + ": vertex " + std::to_string(v) + ": " + coordinates_error(out.positions[v]));
     }
     return out;
 }
 
-/// Reads colours, which are linear, with or without alpha, and between 0 and 1.
 std::vector<VertexColor> GltfMeshes::read_colours(const Json& reference, const std::string& where) {
     const Json& accessors = document_.root()["accessors"];
     const Json& accessor = accessors[reference.index(accessors.size())];
     const std::size_t components = accessor["type"].text() == "VEC4" ? 4 : 3, type = accessor["componentType"].index(0);
     const std::vector<float> numbers = accessors_.numbers(reference, components == 4 ? "VEC4" : "VEC3", where);
-    // Whole numbers must be normalised; if a file does not say so, they are normalised nevertheless.
-    const bool is_forgotten = !accessor["normalized"].is_true();
-    const float unit = !is_forgotten || (type != 5121 && type != 5123) ? 1.0f : type == 5121 ? 255.0f : 65535.0f;
-    const auto share = [&](std::size_t i) {
+    // Integers must be normalised; if a file does not declare this, they are normalised here.
+    const bool is_normalised = accessor["normalized"].is_true();
+    const float unit = is_normalised || (type != kGltfUnsignedByte && type != kGltfUnsignedShort) ? 1.0f
+                       : type == kGltfUnsignedByte                                                ? 255.0f
+                                                                                                  : 65535.0f;
+    const auto fraction = [&](std::size_t i) {
         const float value = numbers[i] / unit;
         return value > 0 ? std::min(value, 1.0f) : 0.0f;
     };
     std::vector<VertexColor> out;
     out.reserve(numbers.size() / components);
     for (std::size_t i = 0; i < numbers.size(); i += components)
-        out.push_back({{share(i), share(i + 1), share(i + 2)}, components == 4 ? share(i + 3) : 1.0f});
+        out.push_back({{fraction(i), fraction(i + 1), fraction(i + 2)}, components == 4 ? fraction(i + 3) : 1.0f});
     return out;
 }
 
-/// Applies the morph targets with the file's weights.
-void GltfMeshes::add_targets(const Primitive& primitive, FileVertices& vertices) {
+void GltfMeshes::apply_targets(const Primitive& primitive, FileVertices& vertices) {
     const Json& targets = primitive.json["targets"];
     for (std::size_t t = 0; t < targets.size(); ++t) {
         const double weight = primitive.weights[t].number(0);
@@ -208,10 +206,10 @@ void GltfMeshes::add_targets(const Primitive& primitive, FileVertices& vertices)
             check_count(out.size(), vertices.positions.size(), where);
             return out;
         };
-        const std::vector<Vec3d> moves = deltas("POSITION"), turns = deltas("NORMAL");
-        for (std::size_t v = 0; v < moves.size(); ++v) vertices.positions[v] += weight * moves[v];
+        const std::vector<Vec3d> positions = deltas("POSITION"), normals = deltas("NORMAL");
+        for (std::size_t v = 0; v < positions.size(); ++v) vertices.positions[v] += weight * positions[v];
         if (vertices.normals.empty()) continue;
-        for (std::size_t v = 0; v < turns.size(); ++v) vertices.normals[v] += static_cast<Vec3f>(weight * turns[v]);
+        for (std::size_t v = 0; v < normals.size(); ++v) vertices.normals[v] += static_cast<Vec3f>(weight * normals[v]);
     }
 }
 
@@ -236,15 +234,15 @@ std::vector<Triangle> GltfMeshes::read_triangles(const Primitive& primitive, std
     if (mode > kFan) document_.fail(primitive.label + ": its mode must be a number from 0 to 6");
     std::vector<Triangle> triangles;
     if (mode < kFirstOfTriangles) return triangles;  // points and lines
-    const std::vector<std::uint32_t> i = read_indices(primitive, vertices);
+    const std::vector<std::uint32_t> indices = read_indices(primitive, vertices);
     const std::size_t step = mode == kTriangles ? 3 : 1;
-    triangles.reserve(i.size() / step);
-    for (std::size_t k = 0; k + 2 < i.size(); k += step) {
+    triangles.reserve(indices.size() / step);
+    for (std::size_t k = 0; k + 2 < indices.size(); k += step) {
         checkpoint_.pass();
         // Every second triangle of a strip has the opposite orientation.
         const std::size_t odd = mode == kStrip ? k % 2 : 0;
-        const std::uint32_t first = mode == kFan ? i[0] : i[k + odd];
-        triangles.push_back({{first, i[k + 1 - odd], i[k + 2]}, primitive.material});
+        const std::uint32_t first = mode == kFan ? indices[0] : indices[k + odd];
+        triangles.push_back({{first, indices[k + 1 - odd], indices[k + 2]}, primitive.material});
     }
     return triangles;
 }

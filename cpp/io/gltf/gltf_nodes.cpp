@@ -17,19 +17,20 @@ namespace realcam::io {
 namespace {
 
 /// Greatest number of instances per node: in a file of a megabyte, a thousand nodes may share a million transforms.
-constexpr std::size_t kMost = std::size_t{1} << 21;
+constexpr std::size_t kMaxInstances = std::size_t{1} << 21;
 
-/// Returns the transforms of a node's instances (EXT_mesh_gpu_instancing) in the node's frame; empty if the node does
-/// not have this extension, and hence one mesh. `label`: names the node in messages. Throws SceneFileError.
+/// Returns the transforms of a node's instances (EXT_mesh_gpu_instancing) in the node's frame; an empty list if the
+/// node does not have this extension, and so has its mesh itself. `label`: names the node in messages. Throws
+/// SceneFileError.
 std::vector<Affine<double>> instances_of(const Json& node, GltfAccessors& accessors, const GltfDocument& document,
                                          const std::string& label) {
     const Json& attributes = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
     std::size_t count = 0;
     for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"})
         if (!attributes[name].is_null()) count = std::max(count, accessors.count(attributes[name]));
-    if (count > kMost)
-        document.fail(label + ": has " + std::to_string(count) + " instances; at most " + std::to_string(kMost) +
-                      " are read");
+    if (count > kMaxInstances)
+        document.fail(label + ": has " + std::to_string(count) + " instances; at most " +
+                      std::to_string(kMaxInstances) + " are read");
     const auto read = [&](const char* name, const char* type, std::size_t components) {
         std::vector<float> numbers;
         if (attributes[name].is_null()) return numbers;
@@ -42,43 +43,45 @@ std::vector<Affine<double>> instances_of(const Json& node, GltfAccessors& access
     };
     const std::vector<float> translations = read("TRANSLATION", "VEC3", 3), rotations = read("ROTATION", "VEC4", 4),
                              scales = read("SCALE", "VEC3", 3);
-    const auto vector = [](const std::vector<float>& numbers, std::size_t at) {
-        return static_cast<Vec3d>(Vec3f{numbers[at], numbers[at + 1], numbers[at + 2]});
+    const auto vector_at = [](const std::vector<float>& numbers, std::size_t first) {
+        return static_cast<Vec3d>(Vec3f{numbers[first], numbers[first + 1], numbers[first + 2]});
     };
     std::vector<Affine<double>> out;
     out.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
         FileMotion transform;
-        if (!translations.empty()) transform.translation = vector(translations, 3 * i);
-        if (!scales.empty()) transform.scale = vector(scales, 3 * i);
+        if (!translations.empty()) transform.translation = vector_at(translations, 3 * i);
+        if (!scales.empty()) transform.scale = vector_at(scales, 3 * i);
         if (!rotations.empty()) {
-            const Quaternion turn = {vector(rotations, 4 * i), static_cast<double>(rotations[4 * i + 3])};
-            if (dot(turn, turn) > 0) transform.rotation = turn;
+            const Quaternion q = {vector_at(rotations, 4 * i), static_cast<double>(rotations[4 * i + 3])};
+            if (dot(q, q) > 0) transform.rotation = q;
         }
         out.push_back(transform.parent_from_node(0));
     }
     return out;
 }
 
-class NodeLayout {
+/// Implementation of read_gltf_nodes. Nodes of the file are identified by their indices.
+class NodeReader {
 public:
-    NodeLayout(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors, Checkpoint& checkpoint)
+    NodeReader(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors, Checkpoint& checkpoint)
         : scene_(scene),
           document_(document),
           nodes_(document.root()["nodes"]),
           accessors_(accessors),
           checkpoint_(checkpoint) {}
 
-    GltfNodeNumbers lay_out() {
+    GltfNodeIndices read() {
         find_parents();
         const std::vector<std::size_t> roots = find_roots();
         for (const std::size_t root : roots) add_tree(root);
-        return std::move(numbers_);
+        return std::move(file_indices_);
     }
 
 private:
     std::string label(std::size_t node) const { return gltf_label("node", node, nodes_[node]); }
 
+    /// Sets parents_.
     void find_parents() {
         parents_.assign(nodes_.size(), kNoGltfNode);
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
@@ -93,11 +96,13 @@ private:
         }
     }
 
+    /// Returns a reference, which must exist. `parent`: node that has it as a child.
     const Json& not_null(const Json& reference, std::size_t parent) const {
-        if (reference.is_null()) document_.fail(label(parent) + ": its child is no number");
+        if (reference.is_null()) document_.fail(label(parent) + ": its child must be a number");
         return reference;
     }
 
+    /// Returns the nodes of the file's scene; if the file has no scene, all nodes without a parent.
     std::vector<std::size_t> find_roots() const {
         const Json& root = document_.root();
         std::vector<std::size_t> roots;
@@ -106,15 +111,15 @@ private:
                 if (parents_[n] == kNoGltfNode) roots.push_back(n);
             return roots;
         }
-        const std::size_t number = document_.find("scenes", root["scene"], "scene").value_or(0);
-        const Json& listed = root["scenes"][number]["nodes"];
+        const std::size_t scene = document_.find("scenes", root["scene"], "scene").value_or(0);
+        const Json& listed = root["scenes"][scene]["nodes"];
         std::vector<bool> is_listed(nodes_.size(), false);
         for (std::size_t i = 0; i < listed.size(); ++i) {
             const std::optional<std::size_t> node =
-                document_.find("nodes", listed[i], "scene " + std::to_string(number));
+                document_.find("nodes", listed[i], "scene " + std::to_string(scene));
             if (!node) continue;
             if (parents_[*node] != kNoGltfNode || is_listed[*node])
-                document_.fail(label(*node) + ": a node of a scene is listed once, and has no parent");
+                document_.fail(label(*node) + ": a node of a scene must be listed once, and must not have a parent");
             is_listed[*node] = true;
             roots.push_back(*node);
         }
@@ -125,8 +130,9 @@ private:
     /// every node has at most one parent.
     void add_tree(std::size_t root) {
         struct Open {
-            std::size_t node, next_child;
-            std::uint32_t index;
+            std::size_t node;  // in the file
+            std::size_t next_child;  // position in the list of children
+            std::uint32_t index;  // in scene_.nodes
         };
         std::vector<Open> open = {{root, 0, add_node(root, kNoParent)}};
         while (!open.empty()) {
@@ -142,44 +148,48 @@ private:
         }
     }
 
-    std::uint32_t add_node(std::size_t number, std::uint32_t parent) {
+    /// Adds a node and its instances, and returns its index in the scene. `parent`: index in the scene.
+    std::uint32_t add_node(std::size_t file_index, std::uint32_t parent) {
         checkpoint_.pass();
-        const Json& from = nodes_[number];
+        const Json& from = nodes_[file_index];
         FileNode node{printable(from["name"].text()), transform_of(from), parent};
         const Json& light = from["extensions"]["KHR_lights_punctual"]["light"];
-        if (!light.is_null()) node.light = existing(light, scene_.lights.size(), number, "light");
-        if (!from["camera"].is_null()) node.camera = existing(from["camera"], scene_.cameras.size(), number, "camera");
+        if (!light.is_null()) node.light = existing(light, scene_.lights.size(), file_index, "light");
+        if (!from["camera"].is_null())
+            node.camera = existing(from["camera"], scene_.cameras.size(), file_index, "camera");
         scene_.nodes.push_back(std::move(node));
-        numbers_.nodes.push_back(number);
-        numbers_.meshes.push_back(number);
+        file_indices_.nodes.push_back(file_index);
+        file_indices_.meshes.push_back(file_index);
         const auto index = static_cast<std::uint32_t>(scene_.nodes.size() - 1);
-        add_instances(number, index);
+        add_instances(file_index, index);
         return index;
     }
 
-    std::int32_t existing(const Json& reference, std::size_t count, std::size_t node, const std::string& what) const {
-        const std::size_t which = reference.index(count);
-        if (which >= count)
-            document_.fail(label(node) + ": its " + what + " does not exist; there are " + std::to_string(count));
-        return static_cast<std::int32_t>(which);
+    /// Returns the index of a node's light or camera (`kind`), which must be below `count`.
+    std::int32_t existing(const Json& reference, std::size_t count, std::size_t node, const std::string& kind) const {
+        const std::size_t index = reference.index(count);
+        if (index >= count)
+            document_.fail(label(node) + ": its " + kind + " does not exist; there are " + std::to_string(count));
+        return static_cast<std::int32_t>(index);
     }
 
-    void add_instances(std::size_t number, std::uint32_t node) {
+    /// Adds the instances of a node as its children. `node`: its index in the scene.
+    void add_instances(std::size_t file_index, std::uint32_t node) {
         const std::vector<Affine<double>> transforms =
-            instances_of(nodes_[number], accessors_, document_, label(number));
+            instances_of(nodes_[file_index], accessors_, document_, label(file_index));
         if (transforms.empty()) return;
-        constexpr std::size_t kAlwaysThere = std::size_t{1} << 28;
+        constexpr std::size_t kUncheckedBytes = std::size_t{1} << 28;
         bytes_ += transforms.size() * sizeof(FileNode);
-        if (const std::string why = bytes_ > kAlwaysThere ? too_much_memory(bytes_) : ""; !why.empty())
+        if (const std::string why = bytes_ > kUncheckedBytes ? too_much_memory(bytes_) : ""; !why.empty())
             document_.fail("its instances need " + why);
-        numbers_.meshes[node] = kNoGltfNode;
+        file_indices_.meshes[node] = kNoGltfNode;
         for (const Affine<double>& transform : transforms) {
             checkpoint_.pass();
             FileNode instance{{}, transform, node};
             instance.end = static_cast<std::uint32_t>(scene_.nodes.size() + 1);
             scene_.nodes.push_back(std::move(instance));
-            numbers_.nodes.push_back(kNoGltfNode);
-            numbers_.meshes.push_back(number);
+            file_indices_.nodes.push_back(kNoGltfNode);
+            file_indices_.meshes.push_back(file_index);
         }
     }
 
@@ -188,16 +198,16 @@ private:
     const Json& nodes_;
     GltfAccessors& accessors_;
     Checkpoint& checkpoint_;
-    std::vector<std::size_t> parents_;
-    GltfNodeNumbers numbers_;
+    std::vector<std::size_t> parents_;  // of each node of the file, or kNoGltfNode
+    GltfNodeIndices file_indices_;
     std::size_t bytes_ = 0;  // size of the instances' nodes
 };
 
 }  // namespace
 
-GltfNodeNumbers lay_out_nodes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
-                              Checkpoint& checkpoint) {
-    return NodeLayout(scene, document, accessors, checkpoint).lay_out();
+GltfNodeIndices read_gltf_nodes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
+                                Checkpoint& checkpoint) {
+    return NodeReader(scene, document, accessors, checkpoint).read();
 }
 
 std::vector<Affine<double>> global_transforms(const std::vector<FileNode>& nodes) {
@@ -211,12 +221,13 @@ std::vector<Affine<double>> global_transforms(const std::vector<FileNode>& nodes
 
 namespace {
 
-Vec3d vector_of(const Json& numbers, Vec3d otherwise) {
-    return {numbers[std::size_t{0}].number(otherwise.x), numbers[1].number(otherwise.y),
-            numbers[2].number(otherwise.z)};
+/// Returns a vector of JSON numbers, with default values for absent ones.
+Vec3d vector_of(const Json& numbers, Vec3d defaults) {
+    return {numbers[std::size_t{0}].number(defaults.x), numbers[1].number(defaults.y), numbers[2].number(defaults.z)};
 }
 
-Affine<double> matrix_of(const Json& m) {  // column-major
+/// Returns a 4 x 4 matrix, stored by columns, as an affine map.
+Affine<double> matrix_of(const Json& m) {
     const auto column = [&](std::size_t c) {
         return Vec3d{m[4 * c].number(0), m[4 * c + 1].number(0), m[4 * c + 2].number(0)};
     };
@@ -225,12 +236,12 @@ Affine<double> matrix_of(const Json& m) {  // column-major
 
 }  // namespace
 
-FileMotion standing(const Json& node) {
+FileMotion static_motion(const Json& node) {
     FileMotion motion;
     const Json& q = node["rotation"];
-    // Files round quaternions to seven digits; `rotation` accepts any length.
-    const Quaternion turn = {vector_of(q, {0, 0, 0}), q[3].number(1)};
-    if (dot(turn, turn) > 0) motion.rotation = turn;
+    // The quaternion is not normalised: files round it to seven digits, and parent_from_node accepts any length.
+    const Quaternion rotation = {vector_of(q, {0, 0, 0}), q[3].number(1)};
+    if (dot(rotation, rotation) > 0) motion.rotation = rotation;
     motion.scale = vector_of(node["scale"], {1, 1, 1});
     motion.translation = vector_of(node["translation"], {0, 0, 0});
     return motion;
@@ -238,7 +249,7 @@ FileMotion standing(const Json& node) {
 
 Affine<double> transform_of(const Json& node) {
     if (node["matrix"].size() == 16) return matrix_of(node["matrix"]);
-    return standing(node).parent_from_node(0);
+    return static_motion(node).parent_from_node(0);
 }
 
 }  // namespace realcam::io

@@ -15,23 +15,23 @@ namespace realcam::io {
 Affine<double> transform_of(const Json& node);
 
 /// Returns a node's translation, rotation and scale as a motion without keys.
-FileMotion standing(const Json& node);
+FileMotion static_motion(const Json& node);
 
 inline constexpr std::size_t kNoGltfNode = static_cast<std::size_t>(-1);
 
-/// Indices in the file of a scene's nodes. If a node has several instances of its mesh (EXT_mesh_gpu_instancing), each
-/// of them is an additional node below it that does not exist in the file.
-struct GltfNodeNumbers {
-    std::vector<std::size_t> nodes;  ///< kNoGltfNode for an instance
-    std::vector<std::size_t> meshes;  ///< the node in the file whose mesh it has, or kNoGltfNode
+/// For each node of a FileScene, indices of nodes in the file. If a node has several instances of its mesh
+/// (EXT_mesh_gpu_instancing), each of them becomes an additional child node, which does not exist in the file.
+struct GltfNodeIndices {
+    std::vector<std::size_t> nodes;  ///< the node itself; kNoGltfNode for an instance
+    std::vector<std::size_t> meshes;  ///< the node whose mesh it has; kNoGltfNode if it has none
 };
 
-/// Fills scene.nodes with the nodes of the file's scene, without their meshes; if the file has no scene, with all trees
-/// of nodes. Throws SceneFileError if the nodes are not trees.
-GltfNodeNumbers lay_out_nodes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
-                              Checkpoint& checkpoint);
+/// Sets scene.nodes to the nodes of the file's scene, without their meshes; if the file has no scene, to all of its
+/// nodes. Throws SceneFileError if the nodes do not form trees or have too many instances.
+GltfNodeIndices read_gltf_nodes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
+                                Checkpoint& checkpoint);
 
-/// Returns the transforms from node frames to the scene; `nodes` are in depth-first order.
+/// Returns the transform from each node's frame to the scene, in units of the file; `nodes` are in depth-first order.
 std::vector<Affine<double>> global_transforms(const std::vector<FileNode>& nodes);
 
 }  // namespace realcam::io

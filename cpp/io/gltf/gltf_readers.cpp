@@ -20,7 +20,7 @@ bool is_about(double a, double b) {
     return std::abs(a - b) < 1e-6;
 }
 
-/// Reads the cone of a spot light and clamps it to the allowed range. Returns false if it was outside.
+/// Reads the cone angles of a spot light and clamps them to their range. Returns false if they were outside.
 bool read_cone(FileLight& light, const Json& spot) {
     const double outer = spot["outerConeAngle"].number(light.outer_cone_angle);
     const double inner = spot["innerConeAngle"].number(light.inner_cone_angle);
@@ -64,14 +64,15 @@ void read_gltf_cameras(FileScene& scene, const GltfDocument& document) {
 
 namespace {
 
-constexpr std::array kRead = std::to_array<std::string_view>(
+/// Supported extensions.
+constexpr std::array kSupported = std::to_array<std::string_view>(
     {"EXT_mesh_gpu_instancing", "EXT_texture_webp", "KHR_lights_punctual", "KHR_materials_clearcoat",
      "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness",
      "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_volume",
      "KHR_mesh_quantization", "KHR_texture_transform"});
 
-/// Extensions of materials, found also if a file does not list them.
-constexpr std::array kOfMaterials =
+/// Unsupported extensions of materials, for which a warning is given even if the file does not list them.
+constexpr std::array kUnsupportedMaterials =
     std::to_array<std::string_view>({"KHR_materials_anisotropy", "KHR_materials_diffuse_transmission",
                                      "KHR_materials_dispersion", "KHR_materials_iridescence", "KHR_materials_sheen"});
 
@@ -83,13 +84,13 @@ void warn_of_extensions(FileScene& scene, const GltfDocument& document) {
         const Json& listed = document.root()[list];
         for (std::size_t i = 0; i < listed.size(); ++i) {
             const std::string& name = listed[i].text();
-            const bool is_read = std::find(kRead.begin(), kRead.end(), name) != kRead.end();
-            if (!is_read && !name.empty()) names.insert(printable(name.substr(0, 60)));
+            const bool is_supported = std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
+            if (!is_supported && !name.empty()) names.insert(printable(name.substr(0, 60)));
         }
     }
     const Json& materials = document.root()["materials"];
     for (std::size_t i = 0; i < materials.size(); ++i)
-        for (const std::string_view name : kOfMaterials)
+        for (const std::string_view name : kUnsupportedMaterials)
             if (!materials[i]["extensions"][name].is_null()) names.emplace(name);
     for (const std::string& name : names) scene.warnings.push_back("the extension " + name + " is not modelled");
 }

@@ -9,10 +9,12 @@
 
 namespace realcam::io {
 
-/// Animates the nodes of a scene by the file's first animation; its channels that are not supported, and further
-/// animations, are named in scene.warnings. `numbers`: index in the file of each node. Throws SceneFileError.
+// Readers of the parts of a glTF file, which read_gltf calls.
+
+/// Animates the nodes of a scene by the file's first animation. Unsupported channels and further animations give
+/// warnings. `file_indices`: index in the file of each of scene.nodes. Throws SceneFileError.
 void read_gltf_animations(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
-                          const std::vector<std::size_t>& numbers, Checkpoint& checkpoint);
+                          const std::vector<std::size_t>& file_indices, Checkpoint& checkpoint);
 
 /// Sets scene.pictures to the images of the file; embedded ones are still without their bytes.
 void list_pictures(FileScene& scene, const GltfDocument& document);
@@ -21,8 +23,8 @@ void list_pictures(FileScene& scene, const GltfDocument& document);
 /// empty.
 void fetch_pictures(FileScene& scene, const GltfDocument& document, GltfBuffers& buffers);
 
-/// Sets scene.materials to the materials of the file. scene.pictures must have been listed; a picture without bytes is
-/// added for textures that name none. Each kind of error gives one warning.
+/// Sets scene.materials to the materials of the file. Must be called after list_pictures; a picture without bytes is
+/// added for textures that have no picture. Each kind of error gives one warning.
 void read_gltf_materials(FileScene& scene, const GltfDocument& document);
 
 /// Warns once of each extension that a file uses and that is not supported.

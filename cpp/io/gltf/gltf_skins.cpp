@@ -8,7 +8,8 @@
 namespace realcam::io {
 namespace {
 
-Affine<double> affine_of(const float* m) {  // 4 x 4, column-major
+/// Returns a 4 x 4 matrix, stored by columns, as an affine map.
+Affine<double> affine_of(const float* m) {
     const auto column = [&](int c) { return Vec3d{double(m[4 * c]), double(m[4 * c + 1]), double(m[4 * c + 2])}; };
     return {column(0), column(1), column(2), column(3)};
 }
@@ -17,6 +18,7 @@ Affine<double> affine_of(const InverseAffine<double>& inverse) {
     return {inverse.x, inverse.y, inverse.z, inverse.direction(-inverse.origin)};
 }
 
+/// Adds weight * map, entry by entry.
 void add(Affine<double>& sum, double weight, const Affine<double>& map) {
     sum.x += weight * map.x;
     sum.y += weight * map.y;
@@ -24,25 +26,25 @@ void add(Affine<double>& sum, double weight, const Affine<double>& map) {
     sum.origin += weight * map.origin;
 }
 
-constexpr Affine<double> kNothing = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+constexpr Affine<double> kZero = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 
 }  // namespace
 
 GltfSkins::GltfSkins(const GltfDocument& document, GltfAccessors& accessors, const FileScene& scene,
-                     const std::vector<std::size_t>& numbers, Checkpoint& checkpoint)
+                     const std::vector<std::size_t>& file_indices, Checkpoint& checkpoint)
     : document_(document),
       accessors_(accessors),
       checkpoint_(checkpoint),
       node_index_(document.root()["nodes"].size(), kNoParent) {
     if (document.root()["skins"].size() == 0) return;
-    globals_ = global_transforms(scene.nodes);
-    for (std::uint32_t i = 0; i < numbers.size(); ++i)
-        if (numbers[i] < node_index_.size()) node_index_[numbers[i]] = i;
+    scene_from_node_ = global_transforms(scene.nodes);
+    for (std::uint32_t i = 0; i < file_indices.size(); ++i)
+        if (file_indices[i] < node_index_.size()) node_index_[file_indices[i]] = i;
 }
 
-std::optional<JointMaps> GltfSkins::joint_maps(std::size_t number, std::size_t node) const {
-    const std::string label = "skin " + std::to_string(number);
-    const Json& skin = document_.root()["skins"][number];
+std::optional<JointMaps> GltfSkins::joint_maps(std::size_t index, std::size_t node) const {
+    const std::string label = "skin " + std::to_string(index);
+    const Json& skin = document_.root()["skins"][index];
     const std::size_t count = skin["joints"].size();
     if (count == 0) document_.fail(label + ": has no joints");
     std::vector<float> inverse_binds;
@@ -50,39 +52,39 @@ std::optional<JointMaps> GltfSkins::joint_maps(std::size_t number, std::size_t n
         inverse_binds = accessors_.numbers(skin["inverseBindMatrices"], "MAT4", label);
         if (inverse_binds.size() < 16 * count) document_.fail(label + ": has fewer inverseBindMatrices than joints");
     }
-    const double volume = globals_[node].determinant();
+    const double volume = scene_from_node_[node].determinant();
     if (volume == 0 || !std::isfinite(1 / volume)) return std::nullopt;
-    const Affine<double> node_from_scene = affine_of(globals_[node].inverse());
+    const Affine<double> node_from_scene = affine_of(scene_from_node_[node].inverse());
     JointMaps maps;
     for (std::size_t j = 0; j < count; ++j) {
         checkpoint_.pass();
         const std::optional<std::size_t> joint = document_.find("nodes", skin["joints"][j], label);
-        if (!joint || node_index_[*joint] == kNoParent) document_.fail(label + ": a joint is no node of the scene");
-        const Affine<double> joint_now = node_from_scene * globals_[node_index_[*joint]];
-        maps.push_back(inverse_binds.empty() ? joint_now : joint_now * affine_of(&inverse_binds[16 * j]));
+        if (!joint || node_index_[*joint] == kNoParent) document_.fail(label + ": a joint is not a node of the scene");
+        const Affine<double> node_from_joint = node_from_scene * scene_from_node_[node_index_[*joint]];
+        maps.push_back(inverse_binds.empty() ? node_from_joint : node_from_joint * affine_of(&inverse_binds[16 * j]));
     }
     return maps;
 }
 
 JointWeights read_joint_weights(const GltfDocument& document, GltfAccessors& accessors, const Json& attributes,
                                 std::size_t vertices, std::size_t joints, const std::string& label) {
-    constexpr std::size_t kMostSets = 4;
+    constexpr std::size_t kMaxSets = 4;
     JointWeights out;
-    for (std::size_t set = 0; set < kMostSets; ++set) {
+    for (std::size_t set = 0; set < kMaxSets; ++set) {
         const std::string suffix = '_' + std::to_string(set);
         const Json &joint_json = attributes["JOINTS" + suffix], &weight_json = attributes["WEIGHTS" + suffix];
         if (joint_json.is_null() || weight_json.is_null()) break;
-        const std::vector<std::uint32_t> numbers = accessors.integers(joint_json, "VEC4", label + ": JOINTS" + suffix);
+        const std::vector<std::uint32_t> indices = accessors.integers(joint_json, "VEC4", label + ": JOINTS" + suffix);
         const std::vector<float> weights = accessors.numbers(weight_json, "VEC4", label + ": WEIGHTS" + suffix);
-        if (numbers.size() != 4 * vertices || weights.size() != 4 * vertices)
+        if (indices.size() != 4 * vertices || weights.size() != 4 * vertices)
             document.fail(label + ": JOINTS" + suffix + " and WEIGHTS" + suffix +
                           " must have one element for each of " + std::to_string(vertices) + " vertices");
-        for (std::size_t i = 0; i < numbers.size(); ++i)
-            if (weights[i] != 0 && numbers[i] >= joints)
-                document.fail(label + ": joint " + std::to_string(numbers[i]) +
+        for (std::size_t i = 0; i < indices.size(); ++i)
+            if (weights[i] != 0 && indices[i] >= joints)
+                document.fail(label + ": joint " + std::to_string(indices[i]) +
                               " is not smaller than the number of joints, " + std::to_string(joints));
-        // Set after set, in the layout that apply_skin expects.
-        out.joints.insert(out.joints.end(), numbers.begin(), numbers.end());
+        // The layout of JointWeights.
+        out.joints.insert(out.joints.end(), indices.begin(), indices.end());
         out.weights.insert(out.weights.end(), weights.begin(), weights.end());
         out.per_vertex += 4;
     }
@@ -93,17 +95,17 @@ void apply_skin(FileVertices& vertices, const JointWeights& weights, const Joint
     const std::size_t count = vertices.positions.size();
     for (std::size_t v = 0; v < count; ++v) {
         checkpoint.pass();
-        Affine<double> map = kNothing;
+        Affine<double> map = kZero;
         double sum = 0;
         for (std::size_t k = 0; k < weights.per_vertex; ++k) {
-            const std::size_t at = 4 * (count * (k / 4) + v) + k % 4;
-            const auto weight = static_cast<double>(weights.weights[at]);
+            const std::size_t i = 4 * (count * (k / 4) + v) + k % 4;  // see JointWeights
+            const auto weight = static_cast<double>(weights.weights[i]);
             if (weight == 0) continue;
-            add(map, weight, maps[weights.joints[at]]);
+            add(map, weight, maps[weights.joints[i]]);
             sum += weight;
         }
         if (sum == 0) continue;  // no joint moves it
-        Affine<double> mean = kNothing;
+        Affine<double> mean = kZero;
         add(mean, 1 / sum, map);
         vertices.positions[v] = mean.point(vertices.positions[v]);
         if (!vertices.normals.empty())

@@ -9,27 +9,30 @@
 
 namespace realcam::io {
 
-/// Statements of an OBJ file, with its references resolved to indices from 0 that are in range.
+/// Content of an OBJ file, with its references resolved to indices from 0 that are in range.
 struct ObjData {
-    static constexpr std::uint32_t kNone = 0xffffffffu;
+    static constexpr std::uint32_t kNone = 0xffffffffu;  ///< index of an absent element
 
-    std::vector<Vec3d> positions;
+    std::vector<Vec3d> positions;  ///< in units of the file
     std::vector<Vec2f> uvs;
     std::vector<Vec3f> normals;
     std::vector<VertexColor> colours;  ///< per position, as encoded in the file; may be empty
     bool has_smoothing = false;        ///< true if any line defines smoothing groups
 
-    // Indices for the corners of all faces, one after the other. Those of uvs and normals are empty if no face has any.
+    // Indices in the lists above for the corners of all faces, one after the other; kNone for a corner without. The
+    // lists for uvs and normals are empty if no face has any.
     std::vector<std::uint32_t> corner_positions, corner_uvs, corner_normals;
-    std::vector<std::uint32_t> face_ends;  ///< index of the corner after each face's last
+    std::vector<std::uint32_t> face_ends;  ///< index behind each face's last corner
 
-    /// Faces from `first_face` to before the next run's.
+    /// Consecutive faces with the same material, group and smoothing group: from `first_face` to the next run's.
     struct Run {
-        std::uint32_t first_face, material, group;
+        std::uint32_t first_face;
+        std::uint32_t material;  ///< index in materials, or kNone
+        std::uint32_t group;  ///< index in groups
         std::uint32_t smoothing;  ///< smoothing group; 0: off, as before the first line "s"
 
-        bool continues(const Run& before) const {
-            return material == before.material && group == before.group && smoothing == before.smoothing;
+        bool continues(const Run& previous) const {
+            return material == previous.material && group == previous.group && smoothing == previous.smoothing;
         }
     };
     std::vector<Run> runs;
@@ -39,7 +42,7 @@ struct ObjData {
     std::size_t short_faces = 0;  ///< faces left out, with fewer than three corners
 };
 
-/// Reads the statements of an OBJ file. `scale`: metres per unit, for the limit on coordinates. Throws FileError, and
+/// Reads an OBJ file. `scale`: metres per unit, for the limit on coordinates (in_reach). Throws FileError, and
 /// SceneFileError with the line.
 ObjData read_obj_data(const std::string& path, double scale, Checkpoint& checkpoint);
 

@@ -30,7 +30,8 @@ public:
         bool operator==(const Corner&) const = default;
     };
 
-    std::uint32_t number(const Corner& corner) {
+    /// Returns the index of a corner, adding it on first use.
+    std::uint32_t index_of(const Corner& corner) {
         if (2 * corners_.size() >= table_.size()) grow();
         std::uint32_t& slot = table_[slot_of(corner)];
         if (slot == kEmpty) {
@@ -44,6 +45,7 @@ public:
 private:
     static constexpr std::uint32_t kEmpty = 0xffffffffu;
 
+    /// Returns the slot that holds a corner, or the empty slot for it.
     std::size_t slot_of(const Corner& c) const {
         std::uint64_t hash = c.position * 0x9e3779b97f4a7c15ull;
         hash = (hash ^ hash >> 29 ^ c.uv) * 0xbf58476d1ce4e5b9ull;
@@ -61,12 +63,13 @@ private:
     std::vector<std::uint32_t> table_;  // hash table of indices in corners_; its size is a power of two
 };
 
+/// Implementation of read_obj.
 class ObjAssembler {
 public:
     ObjAssembler(const std::string& path, ObjData data, Checkpoint& checkpoint)
         : data_(std::move(data)), checkpoint_(checkpoint) {
         scene_.path = path;
-        scene_.smooths = true;
+        scene_.smooths_by_angle = true;
         scene_.vertices.resize(1);
     }
 
@@ -77,13 +80,13 @@ public:
         add_triangles();
         add_vertices();
         warn(data_.short_faces, "faces have fewer than three corners; they are left out");
-        warn(tangled_, "polygons cross themselves in very many places; they are cut as if they were convex");
+        warn(tangled_, "polygons cross themselves in too many points; they are triangulated as if they were convex");
         return std::move(scene_);
     }
 
 private:
-    void warn(std::size_t count, const std::string& what) {
-        if (count > 0) scene_.warnings.push_back(std::to_string(count) + ' ' + what);
+    void warn(std::size_t count, const std::string& problem) {
+        if (count > 0) scene_.warnings.push_back(std::to_string(count) + ' ' + problem);
     }
 
     /// Reads the material libraries. A line may name several files, or one with blanks in its name.
@@ -94,18 +97,20 @@ private:
                 read_library(line, read);
                 continue;
             }
-            std::string_view rest = line;
-            while (!rest.empty()) read_library(std::string(take_word(rest)), read);
+            std::string_view names = line;
+            while (!names.empty()) read_library(std::string(take_word(names)), read);
         }
     }
 
+    /// Reads an MTL file, unless it is in `read`, the set of paths that have been read.
     void read_library(const std::string& name, std::set<std::string>& read) {
         std::optional<std::string> file = find_beside(scene_.path, name);
         if (!file) {
-            // A library renamed together with its OBJ is still referred to by its old name.
-            const std::string own = scene_.path.substr(0, scene_.path.rfind('.')) + ".mtl";
+            // A library that was renamed together with its OBJ has the OBJ's name, although the OBJ still refers to the
+            // library's old name.
+            const std::string renamed = scene_.path.substr(0, scene_.path.rfind('.')) + ".mtl";
             scene_.warnings.push_back("mtllib " + in_quotes(name) + ": no such file beside the scene");
-            file = find_beside(own, own.substr(own.rfind('/') + 1));
+            file = find_beside(renamed, renamed.substr(renamed.rfind('/') + 1));
         }
         if (!file || !read.insert(*file).second) return;
         try {
@@ -115,22 +120,24 @@ private:
         }
     }
 
+    /// Sets material_indices_, with a warning for names without a material.
     void find_materials() {
-        std::map<std::string, std::uint32_t> numbers;
-        for (std::uint32_t i = 0; i < scene_.materials.size(); ++i) numbers.emplace(scene_.materials[i].name, i);
+        std::map<std::string, std::uint32_t> indices;
+        for (std::uint32_t i = 0; i < scene_.materials.size(); ++i) indices.emplace(scene_.materials[i].name, i);
         std::vector<std::string> unknown;
         for (const std::string& name : data_.materials) {
-            const auto found = numbers.find(name);
-            material_numbers_.push_back(found == numbers.end() ? default_material() : found->second);
-            if (found == numbers.end()) unknown.push_back(name);
+            const auto found = indices.find(name);
+            material_indices_.push_back(found == indices.end() ? default_material() : found->second);
+            if (found == indices.end()) unknown.push_back(name);
         }
         if (unknown.empty()) return;
         scene_.warnings.push_back(
             "no MTL file has the material " + in_quotes(unknown[0]) +
             (unknown.size() > 1 ? ", nor " + std::to_string(unknown.size() - 1) + " others" : "") +
-            "; the default one is taken");
+            "; the default material is used");
     }
 
+    /// Returns the index of the material for faces without one, adding it on first use.
     std::uint32_t default_material() {
         if (!default_material_) {
             default_material_ = static_cast<std::uint32_t>(scene_.materials.size());
@@ -157,7 +164,7 @@ private:
             const ObjData::Run& run = data_.runs[r];
             const std::size_t end = r + 1 < data_.runs.size() ? data_.runs[r + 1].first_face : data_.face_ends.size();
             const std::uint32_t material =
-                run.material == ObjData::kNone ? default_material() : material_numbers_[run.material];
+                run.material == ObjData::kNone ? default_material() : material_indices_[run.material];
             FileMesh& mesh = scene_.meshes[run.group];
             std::vector<Triangle>& triangles = mesh.triangles;
             if (data_.runs.size() == 1) triangles.reserve(data_.face_ends.size());
@@ -170,22 +177,23 @@ private:
         }
     }
 
+    /// Triangulates a face: corners `first` to `end` - 1 of data_. `has_plain_corners`: corners have only positions.
     void add_face(std::vector<Triangle>& triangles, std::uint32_t first, std::uint32_t end, std::uint32_t material,
                   bool has_plain_corners) {
         const std::uint32_t* positions = data_.corner_positions.data() + first;
-        numbers_.assign(positions, positions + (end - first));
+        vertices_.assign(positions, positions + (end - first));
         pieces_.clear();
         if (end - first == 3) {
             pieces_.push_back({0, 1, 2});
         } else {
             polygon_.clear();
-            for (const std::uint32_t p : numbers_) polygon_.push_back(data_.positions[p]);
+            for (const std::uint32_t p : vertices_) polygon_.push_back(data_.positions[p]);
             if (!triangulate_polygon(polygon_, pieces_, checkpoint_)) ++tangled_;
         }
         if (!has_plain_corners)
-            for (std::uint32_t c = first; c < end; ++c) numbers_[c - first] = corners_.number(corner(c));
+            for (std::uint32_t c = first; c < end; ++c) vertices_[c - first] = corners_.index_of(corner(c));
         for (const PolygonTriangle& piece : pieces_)
-            triangles.push_back({{numbers_[piece[0]], numbers_[piece[1]], numbers_[piece[2]]}, material});
+            triangles.push_back({{vertices_[piece[0]], vertices_[piece[1]], vertices_[piece[2]]}, material});
     }
 
     CornerTable::Corner corner(std::uint32_t c) const {
@@ -224,13 +232,13 @@ private:
     Checkpoint& checkpoint_;
     FileScene scene_;
     CornerTable corners_;
-    std::vector<std::uint32_t> material_numbers_;  // index in scene_.materials of each of data_.materials
+    std::vector<std::uint32_t> material_indices_;  // index in scene_.materials of each of data_.materials
     std::optional<std::uint32_t> default_material_;
     std::size_t tangled_ = 0;
     // Scratch memory for the current face.
-    std::vector<std::uint32_t> numbers_;
-    std::vector<PolygonTriangle> pieces_;
-    std::vector<Vec3d> polygon_;
+    std::vector<std::uint32_t> vertices_;  // indices of its corners' vertices in the scene
+    std::vector<PolygonTriangle> pieces_;  // its triangles
+    std::vector<Vec3d> polygon_;  // its corners
 };
 
 }  // namespace

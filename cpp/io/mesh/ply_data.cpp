@@ -18,6 +18,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
+/// Returns the type of a name in a header; std::nullopt for other words.
 std::optional<PlyType> type_of(const std::string& name) {
     struct Named {
         const char *name, *other_name;
@@ -33,10 +34,11 @@ std::optional<PlyType> type_of(const std::string& name) {
     return std::nullopt;
 }
 
-constexpr std::size_t kPiece = 1 << 20;
+constexpr std::size_t kBlockBytes = 1 << 20;
 
+/// Converts the first bytes, a number of type T, to a double.
 template <class T>
-double value_of(const std::array<char, 8>& bytes) {
+double to_double(const std::array<char, 8>& bytes) {
     T value;
     std::memcpy(&value, bytes.data(), sizeof value);
     return static_cast<double>(value);
@@ -47,8 +49,8 @@ double value_of(const std::array<char, 8>& bytes) {
 PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
     PlyHeader header;
     std::size_t line = 0;
-    const auto fail = [&](const std::string& wanted) {
-        throw SceneFileError(path + ": line " + std::to_string(line) + ": " + wanted);
+    const auto fail = [&](const std::string& message) {
+        throw SceneFileError(path + ": line " + std::to_string(line) + ": " + message);
     };
     const auto next_type = [&](std::istringstream& words) {
         std::string name;
@@ -62,29 +64,29 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
         const std::size_t end = std::min(text.find('\n', header.size), text.size());
         std::istringstream words(std::string(text.substr(header.size, end - header.size)));
         header.size = std::min(end + 1, text.size());
-        std::string word, what;
+        std::string word, argument;
         words >> word;
         if (++line == 1) {
             if (word != "ply") fail("expected \"ply\"");
         } else if (word == "format") {
-            words >> what;
+            words >> argument;
             has_format = true;
-            if (what == "binary_little_endian")
+            if (argument == "binary_little_endian")
                 header.format = PlyHeader::Format::little_endian;
-            else if (what == "binary_big_endian")
+            else if (argument == "binary_big_endian")
                 header.format = PlyHeader::Format::big_endian;
-            else if (what != "ascii")
+            else if (argument != "ascii")
                 fail("expected ascii, binary_little_endian or binary_big_endian");
         } else if (word == "comment") {
-            if (!(words >> what) || what != "TextureFile") continue;
+            if (!(words >> argument) || argument != "TextureFile") continue;
             std::string& texture = header.textures.emplace_back();
             std::getline(words >> std::ws, texture);
             while (texture.ends_with('\r') || texture.ends_with(' ')) texture.pop_back();
             if (texture.empty()) header.textures.pop_back();
         } else if (word == "element") {
             PlyElement& element = header.elements.emplace_back();
-            words >> element.name >> what;
-            std::string_view number = what;
+            words >> element.name >> argument;
+            std::string_view number = argument;
             const std::optional<std::int64_t> count = take_integer(number);
             if (!count || !number.empty() || *count < 0)
                 fail("expected \"element\", a name and a number of at least 0");
@@ -93,7 +95,7 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
             if (header.elements.empty()) fail("expected an element before its properties");
             PlyProperty property{{}, {}, std::nullopt};
             const auto start = words.tellg();
-            if (words >> what; what == "list")
+            if (words >> argument; argument == "list")
                 property.count_type = next_type(words);
             else
                 words.seekg(start);
@@ -112,7 +114,7 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
 }
 
 PlyData::PlyData(const std::string& path, Checkpoint& checkpoint)
-    : checkpoint_(checkpoint), file_(path), buffer_(kPiece + kLongestNumber) {
+    : checkpoint_(checkpoint), file_(path), buffer_(kBlockBytes + kLongestNumber) {
     read_more();
     header_ = parse_ply_header({buffer_.data(), end_}, path);
     begin_ = header_.size;
@@ -122,7 +124,7 @@ void PlyData::read_more() {
     std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
     end_ -= begin_;
     begin_ = 0;
-    const std::size_t n = file_.read(buffer_.data() + end_, std::min(kPiece, buffer_.size() - end_));
+    const std::size_t n = file_.read(buffer_.data() + end_, std::min(kBlockBytes, buffer_.size() - end_));
     checkpoint_.pass(n / 64);
     end_ += n;
 }
@@ -146,19 +148,20 @@ std::optional<double> PlyData::next_binary(PlyType type) {
     begin_ += type.bytes;
     if (header_.format == PlyHeader::Format::big_endian)
         std::reverse(bytes.begin(), bytes.begin() + std::ptrdiff_t(type.bytes));
-    if (type.kind == 'f') return type.bytes == 4 ? value_of<float>(bytes) : value_of<double>(bytes);
+    if (type.kind == 'f') return type.bytes == 4 ? to_double<float>(bytes) : to_double<double>(bytes);
     const bool is_signed = type.kind == 'i';
     switch (type.bytes) {
-        case 1: return is_signed ? value_of<std::int8_t>(bytes) : value_of<std::uint8_t>(bytes);
-        case 2: return is_signed ? value_of<std::int16_t>(bytes) : value_of<std::uint16_t>(bytes);
-        default: return is_signed ? value_of<std::int32_t>(bytes) : value_of<std::uint32_t>(bytes);
+        case 1: return is_signed ? to_double<std::int8_t>(bytes) : to_double<std::uint8_t>(bytes);
+        case 2: return is_signed ? to_double<std::int16_t>(bytes) : to_double<std::uint16_t>(bytes);
+        default: return is_signed ? to_double<std::int32_t>(bytes) : to_double<std::uint32_t>(bytes);
     }
 }
 
 namespace {
 
+/// Replaces a list with one value per vertex by a list with one value per corner of the triangles.
 template <class T>
-void take_corners(std::vector<T>& values, const std::vector<Triangle>& triangles, Checkpoint& checkpoint) {
+void expand_to_corners(std::vector<T>& values, const std::vector<Triangle>& triangles, Checkpoint& checkpoint) {
     if (values.empty()) return;
     std::vector<T> out;
     out.reserve(3 * triangles.size());
@@ -175,10 +178,10 @@ void apply_corners(Scene& scene, const PlyCorners& corners, Checkpoint& checkpoi
     if (corners.uvs.empty() && corners.colours.empty()) return;
     if (scene.triangles.size() > std::numeric_limits<std::uint32_t>::max() / 3)
         throw InputError("more than 1431655765 triangles");
-    take_corners(scene.positions_m, scene.triangles, checkpoint);
-    take_corners(scene.normals, scene.triangles, checkpoint);
-    take_corners(scene.uvs, scene.triangles, checkpoint);
-    take_corners(scene.colors, scene.triangles, checkpoint);
+    expand_to_corners(scene.positions_m, scene.triangles, checkpoint);
+    expand_to_corners(scene.normals, scene.triangles, checkpoint);
+    expand_to_corners(scene.uvs, scene.triangles, checkpoint);
+    expand_to_corners(scene.colors, scene.triangles, checkpoint);
     if (!corners.uvs.empty()) scene.uvs = corners.uvs;
     if (!corners.colours.empty()) {
         scene.colors.clear();

@@ -8,22 +8,24 @@
 namespace realcam::io {
 namespace {
 
+/// Corner in the plane of projection.
 struct Point {
     double x, y;
     bool operator==(const Point&) const = default;
 };
 
 /// Returns twice the signed area of a triangle, positive if it is counter-clockwise.
-double turn(Point a, Point b, Point c) {
+double double_area(Point a, Point b, Point c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
+/// True if p is inside a counter-clockwise triangle or on its edge.
 bool is_inside(Point p, Point a, Point b, Point c) {
-    return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
+    return double_area(a, b, p) >= 0 && double_area(b, c, p) >= 0 && double_area(c, a, p) >= 0;
 }
 
-/// Projects the polygon along the axis that is nearest to its normal (Newell's), so that it is counter-clockwise. Empty
-/// if it has no normal.
+/// Projects the polygon along the axis that is nearest to its normal (Newell's), so that it is counter-clockwise.
+/// Returns an empty list if the normal is zero.
 std::vector<Point> projected(std::span<const Vec3d> corners) {
     Vec3d normal = {0, 0, 0};
     const Vec3d origin = corners[0];
@@ -48,6 +50,7 @@ std::vector<Point> projected(std::span<const Vec3d> corners) {
 /// Points sorted by the cells of a square grid, with about as many cells as points.
 class Grid {
 public:
+    /// `members`: indices of the points that the grid holds; its size is that of all points.
     Grid(const std::vector<Point>& points, const std::vector<std::uint32_t>& members) {
         low_ = high_ = points[0];
         for (const Point& p : points) {
@@ -81,12 +84,14 @@ public:
     }
 
 private:
+    /// Returns the row or column of a coordinate.
     std::size_t bucket(double v, double low, double high) const {
-        const double share = high > low ? (v - low) / (high - low) : 0;
-        return std::min(static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(side_)), side_ - 1);
+        const double position = high > low ? (v - low) / (high - low) : 0;
+        return std::min(static_cast<std::size_t>(std::clamp(position, 0.0, 1.0) * static_cast<double>(side_)),
+                        side_ - 1);
     }
-    /// Returns the range of columns of a row that a triangle may touch. A long triangle across the grid touches only a
-    /// few cells of each row. One more row on both sides allows for rounding.
+    /// Returns the first and last column of row y that a triangle may touch. A long triangle across the grid touches
+    /// only a few cells of each row. One more row and column on both sides allow for rounding.
     std::pair<std::size_t, std::size_t> columns_in_row(const std::array<Point, 3>& triangle, std::size_t y) const {
         const double height = (high_.y - low_.y) / static_cast<double>(side_);
         const double bottom = low_.y + (static_cast<double>(y) - 1) * height, top = bottom + 3 * height;
@@ -96,9 +101,8 @@ private:
             if (std::max(a.y, b.y) < bottom || std::min(a.y, b.y) > top) continue;
             for (const double end : {bottom, top}) {
                 // The edge's end point, or its intersection with the border of the row.
-                const double share =
-                    a.y == b.y ? (end == top ? 1 : 0) : std::clamp((end - a.y) / (b.y - a.y), 0.0, 1.0);
-                const double x = a.x + share * (b.x - a.x);
+                const double t = a.y == b.y ? (end == top ? 1 : 0) : std::clamp((end - a.y) / (b.y - a.y), 0.0, 1.0);
+                const double x = a.x + t * (b.x - a.x);
                 left = std::min(left, x);
                 right = std::max(right, x);
             }
@@ -110,11 +114,12 @@ private:
     std::size_t row(double y) const { return bucket(y, low_.y, high_.y); }
     std::size_t cell(Point p) const { return row(p.y) * side_ + column(p.x); }
 
-    Point low_{}, high_{};
-    std::size_t side_ = 1;
-    std::vector<std::uint32_t> begin_, members_;
+    Point low_{}, high_{};  // bounds of all points
+    std::size_t side_ = 1;  // number of rows and of columns
+    std::vector<std::uint32_t> begin_, members_;  // begin_[c] .. begin_[c + 1] of members_ are the points in cell c
 };
 
+/// Returns the corners with an interior angle above 180 degrees.
 std::vector<std::uint32_t> reflex_corners(const std::vector<Point>& points) {
     // A corner that is straight up to rounding is not reflex.
     double size = 0;
@@ -123,11 +128,13 @@ std::vector<std::uint32_t> reflex_corners(const std::vector<Point>& points) {
     std::vector<std::uint32_t> found;
     const std::size_t n = points.size();
     for (std::size_t i = 0; i < n; ++i)
-        if (turn(points[(i + n - 1) % n], points[i], points[(i + 1) % n]) < -rounding)
+        if (double_area(points[(i + n - 1) % n], points[i], points[(i + 1) % n]) < -rounding)
             found.push_back(static_cast<std::uint32_t>(i));
     return found;
 }
 
+/// Ear clipping: cuts off triangles at convex corners that contain no other corner. If such a triangle contains any
+/// corner, it contains a reflex one; so only these are searched, with a grid.
 class EarClipper {
 public:
     EarClipper(const std::vector<Point>& points, const std::vector<std::uint32_t>& reflex)
@@ -141,55 +148,58 @@ public:
         for (std::uint32_t i = 0; i < n; ++i) before_[i] = (i + n - 1) % n, after_[i] = (i + 1) % n;
     }
 
+    /// See triangulate_polygon.
     bool clip(std::vector<PolygonTriangle>& triangles, Checkpoint& checkpoint) {
-        std::size_t left = points_.size(), work = 0, since_last = 0;
-        const std::size_t most_work = 400 * left + 20000;
-        std::uint32_t at = 0;
-        while (left > 3 && work < most_work) {
-            const std::size_t before = work++;
+        std::size_t corners_left = points_.size(), work = 0, since_last_ear = 0;
+        const std::size_t max_work =
+            400 * corners_left + 20000;  // far above that of polygons that do not cross themselves
+        std::uint32_t corner = 0;
+        while (corners_left > 3 && work < max_work) {
+            const std::size_t work_before = work++;
             // If a full round has no ear, the polygon crosses itself, and any corner is as good as another.
-            const bool clips = since_last >= left || is_ear(at, work);
-            checkpoint.pass(work - before);
-            const std::uint32_t next = after_[at];
+            const bool clips = since_last_ear >= corners_left || is_ear(corner, work);
+            checkpoint.pass(work - work_before);
+            const std::uint32_t next = after_[corner];
             if (clips) {
-                triangles.push_back({before_[at], at, next});
-                remove(at);
-                --left;
+                triangles.push_back({before_[corner], corner, next});
+                remove(corner);
+                --corners_left;
             }
-            since_last = clips ? 0 : since_last + 1;
+            since_last_ear = clips ? 0 : since_last_ear + 1;
             // Continues at the corner after the ear's neighbour: this cuts ears all around, instead of a fan of slivers
             // at one corner.
-            at = clips ? after_[next] : next;
+            corner = clips ? after_[next] : next;
         }
-        for (std::uint32_t second = after_[at]; left > 2; --left, second = after_[second])
-            triangles.push_back({at, second, after_[second]});
-        return work < most_work;
+        for (std::uint32_t second = after_[corner]; corners_left > 2; --corners_left, second = after_[second])
+            triangles.push_back({corner, second, after_[second]});
+        return work < max_work;
     }
 
 private:
-    bool is_ear(std::uint32_t at, std::size_t& work) const {
-        if (is_reflex_[at]) return false;
-        const Point a = points_[before_[at]], b = points_[at], c = points_[after_[at]];
+    /// True if the triangle at a corner can be cut off. Adds the work of the test to `work`.
+    bool is_ear(std::uint32_t corner, std::size_t& work) const {
+        if (is_reflex_[corner]) return false;
+        const Point a = points_[before_[corner]], b = points_[corner], c = points_[after_[corner]];
         return !grid_.any_in({a, b, c}, work, [&](std::uint32_t other) {
             const Point p = points_[other];
-            // Corners coincide if a cut leads to a hole and back.
+            // Corners coincide in polygons with a hole: a pair of coincident edges connects the hole to the outline.
             return is_reflex_[other] && p != a && p != b && p != c && is_inside(p, a, b, c);
         });
     }
 
-    void remove(std::uint32_t at) {
-        const std::uint32_t neighbours[] = {before_[at], after_[at]};
+    void remove(std::uint32_t corner) {
+        const std::uint32_t neighbours[] = {before_[corner], after_[corner]};
         after_[neighbours[0]] = neighbours[1];
         before_[neighbours[1]] = neighbours[0];
-        is_reflex_[at] = false;
+        is_reflex_[corner] = false;
         for (const std::uint32_t i : neighbours)
-            is_reflex_[i] = is_reflex_[i] && turn(points_[before_[i]], points_[i], points_[after_[i]]) < 0;
+            is_reflex_[i] = is_reflex_[i] && double_area(points_[before_[i]], points_[i], points_[after_[i]]) < 0;
     }
 
     const std::vector<Point>& points_;
     Grid grid_;
     std::vector<bool> is_reflex_;
-    std::vector<std::uint32_t> before_, after_;
+    std::vector<std::uint32_t> before_, after_;  // the neighbours of each corner in what is left of the polygon
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
-// A picture as stored in its file. The interpretation of its numbers depends on its use.
+// Decoded images: pictures as stored in their files, whose numbers are interpreted by the use of the texture, and
+// vertex colours.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +21,7 @@ namespace realcam::io {
 /// and NaN become 0. Alpha is linear. Returns a warning for corrected numbers, or an empty string.
 std::string decode_vertex_colours(std::vector<VertexColor>& colours);
 
-/// True if any alpha is below 1.
+/// True if the alpha of any vertex colour is below 1.
 bool are_transparent(const std::vector<VertexColor>& colours);
 
 /// Red, green, blue and alpha of each pixel, row 0 at the top, rows without padding: 4 * width * height values. Alpha
@@ -36,18 +37,24 @@ struct DecodedImage {
     std::optional<std::array<double, 9>> rec709 = std::nullopt;
 };
 
-/// 16384 x 16384 pixels, the largest texture of a GPU. A file of a megabyte can claim 40000 x 40000.
+/// Limit of the size of textures: 16384 x 16384 pixels, the largest texture of a GPU. A file of a megabyte can claim
+/// 40000 x 40000.
 inline constexpr std::size_t kMostTexturePixels = std::size_t{1} << 28;
 
-/// Decodes one picture, from the file `path`, or, if `path` is empty, from the bytes of a PNG or JPEG that is embedded
-/// in the scene file. If it throws Error or returns std::nullopt, the scene gets a stand-in and a warning.
+/// Function that decodes one picture, from the file `path`, or, if `path` is empty, from the bytes of a PNG or JPEG
+/// that is embedded in the scene file. If it throws Error or returns std::nullopt, the scene gets a checker pattern
+/// instead and a warning.
 using ImageReader =
     std::function<std::optional<DecodedImage>(const std::string& path, std::span<const std::uint8_t> encoded_bytes)>;
 
-/// Use of a texture. Data are numbers, such as a roughness or a direction, which are never encoded as sRGB. Opacity
-/// (and other properties of the alpha channel) is in the alpha channel, or, if a picture has no alpha or only white
-/// there, in the mean of the other channels.
-enum class TextureUse { colour, data, opacity };
+/// Use of a texture.
+enum class TextureUse {
+    colour,
+    data,  ///< numbers, such as a roughness or a direction, which are never encoded as sRGB
+    /// Opacity and other properties of the alpha channel; in the alpha channel, or, if a picture has no alpha or only
+    /// white there, in the mean of the other channels.
+    opacity,
+};
 
 /// Returns the use of the texture of a material property.
 inline TextureUse use_of(TextureReference Material::* property) {
@@ -67,13 +74,14 @@ inline bool is_srgb(const DecodedImage& image, TextureUse use) {
 /// srgb_to_linear.
 float linear_of_srgb(float v);
 
-/// True if an image has pixels, and as many as its size requires.
+/// True if an image has at least one pixel, and the number of values that its size requires.
 bool is_whole(const DecodedImage& image);
 
-/// Makes a texture of a whole image. 8-bit values are kept as they are encoded, and floats become linear.
+/// Converts an image, for which is_whole must hold, to a texture. 8-bit values remain encoded, and floats become
+/// linear.
 Texture texture_of(DecodedImage image, TextureUse use, std::string name);
 
-/// True if any alpha is below 1.
+/// True if the alpha of any texel is below 1.
 bool has_holes(const Texture& texture);
 
 }  // namespace realcam::io

@@ -23,10 +23,10 @@ namespace realcam::io {
 /// statements for physically based rendering, which begin with P. Members have the names of the format.
 struct MtlMaterial {
     Vec3f Ka = {0, 0, 0};           ///< ambient; not needed by a path tracer
-    Vec3f Kd = {0.6f, 0.6f, 0.6f};  ///< the format has no default; many viewers use this one
-    Vec3f Ks = {0, 0, 0};
-    Vec3f Ke = {0, 0, 0};
-    Vec3f Tf = {1, 1, 1};     ///< transmission filter
+    Vec3f Kd = {0.6f, 0.6f, 0.6f};  ///< diffuse; the format has no default; many viewers use this one
+    Vec3f Ks = {0, 0, 0};           ///< specular
+    Vec3f Ke = {0, 0, 0};           ///< emission
+    Vec3f Tf = {1, 1, 1};           ///< transmission filter
     float Ns = 0;             ///< Phong exponent
     std::optional<float> Ni;  ///< index of refraction, 0.001 to 10
     float d = 1;              ///< 0..1, 1 is opaque; Tr is 1 - d
@@ -59,8 +59,8 @@ struct FileMaterial {
         return gltf ? gltf->colour_texture() : FileTexture{};
     }
 
-    /// Returns the texture coordinate sets of a glTF mesh that the textures use, that of the first texture first: its
-    /// vertices get them as uvs and second_uvs.
+    /// Returns the numbers n of the sets TEXCOORD_n that the textures use, at most two, in the order in which the
+    /// vertices of the material's meshes get them as uvs and second_uvs. {0} for materials of other formats.
     std::vector<std::uint32_t> uv_sets() const {
         const auto* gltf = std::get_if<GltfMaterial>(&content);
         return gltf && !gltf->uv_sets.empty() ? gltf->uv_sets : std::vector<std::uint32_t>{0};
@@ -77,22 +77,25 @@ struct FileVertices {
     std::vector<std::uint32_t> position_ids;  ///< empty, or one per position: see Smoothing
 };
 
+/// Triangles of a file that share a list of vertices.
 struct FileMesh {
     std::string label;  ///< for messages
     std::uint32_t vertices = 0;  ///< index in FileScene::vertices
     std::vector<Triangle> triangles;  ///< indices in range; material: index in FileScene::materials
-    /// Smoothing group of each triangle without normals; 0 is flat. If this is empty, FileScene::smooths decides.
+    /// Smoothing group of each triangle without normals; 0 is flat. If this is empty, FileScene::smooths_by_angle
+    /// decides.
     std::vector<std::uint32_t> smoothing;
 };
 
-constexpr std::uint32_t kNoParent = 0xffffffffu;
+constexpr std::uint32_t kNoParent = 0xffffffffu;  ///< FileNode::parent of a root
 
 /// Node of the hierarchy. Nodes are in depth-first order: the descendants of node i are i + 1 to end - 1.
 struct FileNode {
     std::string name;  ///< valid UTF-8
-    Affine<double> parent_from_node;
-    std::uint32_t parent = kNoParent, end = 0;
-    std::uint32_t first_mesh = 0, mesh_count = 0;  ///< in FileScene::meshes
+    Affine<double> parent_from_node;  ///< in units of the file
+    std::uint32_t parent = kNoParent;  ///< index of the parent
+    std::uint32_t end = 0;  ///< index behind the last descendant
+    std::uint32_t first_mesh = 0, mesh_count = 0;  ///< range in FileScene::meshes
     std::int32_t light = -1;  ///< index in FileScene::lights, or -1
     std::int32_t camera = -1;  ///< index in FileScene::cameras, or -1
     std::int32_t motion = -1;  ///< index in FileScene::motions; -1 if the node does not move
@@ -101,25 +104,28 @@ struct FileNode {
 /// Picture used by materials.
 struct FilePicture {
     std::string name;  ///< name in the file; for an embedded picture, a label
-    bool is_inside = false;
+    bool is_embedded = false;  ///< the scene file holds the picture
     std::string bytes;  ///< bytes of an embedded picture, encoded as PNG or JPEG; empty if they cannot be read
 };
 
+/// Light of KHR_lights_punctual. Its position and direction are those of its node.
 struct FileLight {
     std::string type;  ///< type in KHR_lights_punctual: point, directional, spot, or another word in the file
     Vec3d strength;  ///< colour times intensity: cd, or lux for "directional"
-    /// Angles of a spot from its axis, in radians, at which it begins and ends to fade. 0 <= inner <= outer <= pi / 2.
+    /// Angles from a spot's axis, in radians, at which its falloff begins and ends. 0 <= inner <= outer <= pi / 2.
     double inner_cone_angle = 0, outer_cone_angle = 0.785398163397448;
 };
 
+/// Camera of a file. Its pose is that of its node.
 struct FileCamera {
     std::string name;  ///< valid UTF-8
-    double vertical_field_rad = 0;  ///< 0: orthographic
+    double vertical_field_rad = 0;  ///< vertical field of view in radians; 0: orthographic
 };
 
+/// Content of a scene file.
 struct FileScene {
     std::string path;
-    bool smooths = false;  ///< triangles without normals are smoothed by angle instead of flat
+    bool smooths_by_angle = false;  ///< triangles without normals are smoothed by angle instead of flat
     std::vector<FileVertices> vertices;
     std::vector<FileMesh> meshes;
     std::vector<FileNode> nodes;

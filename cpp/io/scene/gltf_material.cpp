@@ -4,9 +4,10 @@ namespace realcam::io {
 
 namespace {
 
+/// See GltfMaterial::textures. Both types are const, or neither.
 template <class Material, class Texture>
 std::vector<Texture*> textures_of(Material& m) {
-    auto& gloss = m.specular_glossiness;
+    auto& gloss = m.specular_glossiness;  // replaces the metallic-roughness model if present
     std::vector<Texture*> all = {gloss ? &gloss->diffuse_texture : &m.base_color_texture,
                                  gloss ? &gloss->specular_glossiness_texture : &m.metallic_roughness_texture,
                                  &m.normal_texture,

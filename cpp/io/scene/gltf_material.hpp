@@ -51,8 +51,10 @@ struct GltfSpecular {
     FileTexture color_texture;
 };
 
+/// Meaning of alpha: ignored (opaque), an alpha test against alpha_cutoff (mask), or coverage (blend).
 enum class AlphaMode { opaque, mask, blend };
 
+/// Material of a glTF file.
 struct GltfMaterial {
     Vec3f base_color_factor = {1, 1, 1};
     float alpha = 1;  ///< fourth number of baseColorFactor
@@ -70,7 +72,7 @@ struct GltfMaterial {
 
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5f;  ///< threshold for AlphaMode::mask
-    bool double_sided = false;
+    bool double_sided = false;  ///< here only of effect on emission, which is then on both sides
 
     float ior = 1.5f;  ///< KHR_materials_ior: at least 1, or 0 for a reflectance given by `specular` alone
     bool unlit = false;  ///< KHR_materials_unlit
@@ -80,13 +82,14 @@ struct GltfMaterial {
     GltfSpecular specular;
     std::optional<GltfSpecularGlossiness> specular_glossiness;  ///< replaces base colour, metallic and roughness
 
+    /// Returns the texture of the surface's colour.
     FileTexture colour_texture() const {
         return specular_glossiness ? specular_glossiness->diffuse_texture : base_color_texture;
     }
     std::vector<std::uint32_t> uv_sets;  ///< n of TEXCOORD_n, indexed by FileTexture::uv_set: at most two
 
-    /// Returns the textures that exist and take effect, that of the colour first: without occlusion, and of the two
-    /// reflection models only those of the one in effect.
+    /// Returns the textures that exist and have an effect, the colour texture first: all but the occlusion texture and
+    /// the textures of the reflection model that is not used.
     std::vector<const FileTexture*> textures() const;
     std::vector<FileTexture*> textures();
 };

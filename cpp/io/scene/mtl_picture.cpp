@@ -9,79 +9,85 @@
 namespace realcam::io {
 namespace {
 
-/// Option of a picture statement: the greatest number of its words and its default. Words after the first are numbers
-/// and optional. With its default, an option has no effect.
+/// Option of a texture statement. With its default argument, an option has no effect.
 struct Option {
     std::string_view name;
-    std::size_t words;
-    std::string_view by_default;
+    std::size_t max_arguments;  ///< arguments after the first are numbers and optional
+    std::string_view default_argument;  ///< empty: the option has no default
 };
 constexpr Option kOptions[] = {{"-blendu", 1, "on"}, {"-blendv", 1, "on"}, {"-boost", 1, ""},   {"-bm", 1, ""},
                                {"-cc", 1, "off"},    {"-clamp", 1, "off"}, {"-imfchan", 1, ""}, {"-mm", 2, ""},
                                {"-o", 3, ""},        {"-s", 3, ""},        {"-t", 3, ""},       {"-texres", 1, ""},
                                {"-type", 1, ""}};
 
+/// Returns null if there is no option of this name.
 const Option* find_option(std::string_view name) {
     for (const Option& option : kOptions)
         if (option.name == name) return &option;
     return nullptr;
 }
 
+/// Parses a word that must be a number as a whole.
 std::optional<double> number_of(std::string_view word) {
     const std::optional<double> number = take_number(word);
     return word.empty() ? number : std::nullopt;
 }
 
-/// Takes the words of an option from the beginning of `rest`.
-std::vector<std::string_view> take_arguments(std::string_view& rest, const Option& option) {
-    std::vector<std::string_view> words;
-    while (words.size() < option.words) {
-        std::string_view behind = rest;
-        const std::string_view word = take_word(behind);
-        if (!words.empty() && !number_of(word)) break;
-        words.push_back(word);
-        rest = behind;
+/// Removes the arguments of an option from the beginning of `text` and returns them: at least one.
+std::vector<std::string_view> take_arguments(std::string_view& text, const Option& option) {
+    std::vector<std::string_view> arguments;
+    while (arguments.size() < option.max_arguments) {
+        std::string_view after_word = text;
+        const std::string_view word = take_word(after_word);
+        if (!arguments.empty() && !number_of(word)) break;
+        arguments.push_back(word);
+        text = after_word;
     }
-    return words;
+    return arguments;
 }
 
+/// Parser of one statement's arguments.
 class PictureParser {
 public:
-    std::optional<MtlPicture> parse(std::string_view rest) {
-        while (rest.starts_with('-')) {
-            std::string_view after = rest;
-            const Option* option = find_option(take_word(after));
+    /// See parse_mtl_picture.
+    std::optional<MtlPicture> parse(std::string_view text) {
+        while (text.starts_with('-')) {
+            std::string_view after_option = text;
+            const Option* option = find_option(take_word(after_option));
             if (!option) break;  // a file name may begin with - as well
-            if (!apply(*option, take_arguments(after, *option))) return std::nullopt;
-            rest = after;
+            if (!apply(*option, take_arguments(after_option, *option))) return std::nullopt;
+            text = after_option;
         }
-        out_.name = rest;
+        out_.name = text;
         out_.transform = TextureTransform::of_mtl(scale_[0], scale_[1], offset_[0], offset_[1]);
-        return rest.empty() ? std::nullopt : std::optional(out_);
+        return text.empty() ? std::nullopt : std::optional(out_);
     }
 
 private:
-    bool apply(const Option& option, const std::vector<std::string_view>& words) {
-        if (option.name == "-s") return read(words, scale_);
-        if (option.name == "-o") return read(words, offset_);
-        if (option.name == "-bm") return read_bm(words[0]);
-        if (option.name == "-clamp" && (words[0] == "on" || words[0] == "off")) {
-            out_.clamps = words[0] == "on";
+    /// Stores an option's arguments. Returns false if a number is missing.
+    bool apply(const Option& option, const std::vector<std::string_view>& arguments) {
+        if (option.name == "-s") return read_numbers(arguments, scale_);
+        if (option.name == "-o") return read_numbers(arguments, offset_);
+        if (option.name == "-bm") return read_bm(arguments[0]);
+        if (option.name == "-clamp" && (arguments[0] == "on" || arguments[0] == "off")) {
+            out_.clamps = arguments[0] == "on";
             return true;
         }
-        if (words[0] != option.by_default) out_.other_options.push_back(option.name);
+        if (arguments[0] != option.default_argument) out_.other_options.push_back(option.name);
         return true;
     }
 
-    static bool read(const std::vector<std::string_view>& words, std::array<double, 3>& numbers) {
-        for (std::size_t i = 0; i < std::min(words.size(), numbers.size()); ++i) {
-            const std::optional<double> number = number_of(words[i]);
+    /// Overwrites the first elements of `numbers`. Returns false if an argument is not a number.
+    static bool read_numbers(const std::vector<std::string_view>& arguments, std::array<double, 3>& numbers) {
+        for (std::size_t i = 0; i < std::min(arguments.size(), numbers.size()); ++i) {
+            const std::optional<double> number = number_of(arguments[i]);
             if (!number) return false;
             numbers[i] = *number;
         }
         return true;
     }
 
+    /// Reads the argument of -bm. Returns false if it is not a number.
     bool read_bm(std::string_view word) {
         const std::optional<double> factor = number_of(word);
         out_.has_bm = factor.has_value();
@@ -89,7 +95,7 @@ private:
         return out_.has_bm;
     }
 
-    MtlPicture out_;
+    MtlPicture out_;  ///< result of parse()
     std::array<double, 3> scale_{1, 1, 1}, offset_{0, 0, 0};
 };
 

@@ -7,17 +7,17 @@
 
 namespace realcam::io {
 
-/// Arguments of a picture statement such as map_Kd.
+/// Arguments of an MTL texture statement such as map_Kd.
 struct MtlPicture {
     std::string_view name;       ///< file name, including blanks
     TextureTransform transform;  ///< from -s and -o: u becomes s u + o, as in other programs
     bool clamps = false;  ///< -clamp on
-    double bm = 1;  ///< -bm
-    bool has_bm = false;
-    std::vector<std::string_view> other_options;  ///< options with other arguments than the format's default
+    double bm = 1;  ///< argument of -bm: factor of bump heights
+    bool has_bm = false;  ///< -bm is present
+    std::vector<std::string_view> other_options;  ///< unsupported options whose arguments are not the format's default
 };
 
-/// Parses a statement's arguments, such as "-s 2 2 -clamp on my wood.png"; `text` has to outlive the result. Returns
+/// Parses a statement's arguments, such as "-s 2 2 -clamp on my wood.png"; `text` must outlive the result. Returns
 /// std::nullopt if there is no file name, or no number after -s, -o or -bm. Numbers may be infinite or NaN.
 std::optional<MtlPicture> parse_mtl_picture(std::string_view text);
 

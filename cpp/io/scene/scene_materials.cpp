@@ -9,27 +9,32 @@
 #include "../text/printable.hpp"
 #include "decoded_image.hpp"
 
+// Conversion of the materials of scene files to those of the renderer.
+
 namespace realcam::io {
 namespace {
 
 Color color_of(Vec3f v) {
     return {v.x, v.y, v.z};
 }
+/// Clamps to 0..1.
 Color unit_range(Vec3f v) {
     return {std::clamp(v.x, 0.0f, 1.0f), std::clamp(v.y, 0.0f, 1.0f), std::clamp(v.z, 0.0f, 1.0f)};
 }
 
-/// Colours of the vertices of a material's triangles.
+/// Colours of the vertices of a material's triangles: whether there are any, and whether any alpha is below 1.
 struct VertexColours {
     bool exist = false, are_transparent = false;
 };
 
+/// Converts one material. Warnings go to the scene.
 class MaterialMaker {
 public:
-    /// `scale`: metres per unit of the file.
+    /// `label`: beginning of the warnings; `scale`: metres per unit of the file.
     MaterialMaker(Scene& scene, SceneTextures& textures, std::string label, double scale)
         : scene_(scene), textures_(textures), label_(std::move(label)), scale_(scale) {}
 
+    /// Returns the material for the renderer.
     Material make(const FileMaterial& from, const VertexColours& colours) {
         colours_ = colours;
         if (from.is_white) material_.diffuse = {1, 1, 1};
@@ -55,6 +60,7 @@ private:
         }
     }
 
+    /// Converts the statements for physically based rendering (Pr, Pm, Pc, Pcr).
     void set_mtl_metallic_roughness(const MtlMaterial& from) {
         material_.model = MaterialModel::metallic_roughness;
         material_.specular = {1, 1, 1};
@@ -71,23 +77,23 @@ private:
     /// exact.
     void set_bump_map(const MtlMaterial& from) {
         if (!from.bump || from.bm == 0) return;
-        if (from.norm) return warn("has a bump map beside a normal map (norm), which alone counts");
+        if (from.norm) return warn("has a bump map beside a normal map (norm); only the normal map is used");
         if (const auto found = textures_.find_heights(from.bump, from.bm)) material_.normal_texture = *found;
     }
 
     void set_roughness_and_metallic(const FileTexture& roughness, const FileTexture& metallic) {
-        if (roughness && metallic && !roughness.lies_as(metallic))
+        if (roughness && metallic && !roughness.has_same_mapping(metallic))
             warn(
-                "has maps of roughness and metallic that lie differently on the surface; both lie as that of "
-                "roughness");
+                "has maps of roughness and metallic with different transforms or samplers; those of the roughness map "
+                "are used for both");
         if (const auto found = textures_.find_roughness_and_metallic(roughness, metallic))
             material_.metallic_roughness_texture = *found;
     }
 
-    // Follows the format's table of illumination models. In 3 to 9 the highlights are mirror images of the lights, so
-    // that there is no Phong lobe beside the mirror.
+    /// Sets the lobes by the format's table of illumination models. In 3 to 9 the highlights are mirror images of the
+    /// lights, so that there is no Phong lobe beside the mirror.
     void set_illumination_model(const MtlMaterial& from) {
-        const float passing = 1 - from.d;
+        const float transmission = 1 - from.d;
         switch (from.illum) {
             case 0: make_unlit("illum 0"), set_dissolve(from); break;
             case 1: set_dissolve(from); break;
@@ -95,9 +101,9 @@ private:
             case 8: set_mirror(from, FresnelTerm::none), set_dissolve(from); break;
             case 5: set_mirror(from, FresnelTerm::physical), set_dissolve(from); break;
             case 4:
-            case 9: set_mirror(from, FresnelTerm::physical), set_film(passing, from); break;
-            case 6: set_mirror(from, FresnelTerm::none), set_refraction(passing, from); break;
-            case 7: set_mirror(from, FresnelTerm::physical), set_refraction(passing, from); break;
+            case 9: set_mirror(from, FresnelTerm::physical), set_film(transmission, from); break;
+            case 6: set_mirror(from, FresnelTerm::none), set_refraction(transmission, from); break;
+            case 7: set_mirror(from, FresnelTerm::physical), set_refraction(transmission, from); break;
             case 10: material_.only_shadows = 1; break;
             default:
                 material_.specular = color_of(from.Ks);
@@ -108,32 +114,39 @@ private:
         }
     }
 
+    /// Sets a mirror of reflectance Ks.
     void set_mirror(const MtlMaterial& from, FresnelTerm fresnel) {
         material_.mirror = color_of(from.Ks);
         material_.fresnel = fresnel;
-        if (from.map_Ks) warn("has a map of Ks, which is modelled for highlights only");
+        if (from.map_Ks) warn("has a map_Ks, which is supported for highlights only, not for mirrors");
     }
 
-    /// Applies d, the coverage of the surface. With a transmission filter it becomes a coloured film.
+    /// Sets the opacity to d, the coverage of the surface. With a transmission filter the surface becomes a coloured
+    /// film.
     void set_dissolve(const MtlMaterial& from) {
         if (unit_range(from.Tf) != Color{1, 1, 1}) return set_film(1 - from.d, from);
         material_.opacity = from.d;
         set_opacity_map(from.map_d, TextureUse::opacity);
     }
 
-    /// Makes a surface that transmits light without refraction.
-    void set_film(float share, const MtlMaterial& from) {
-        if (from.map_d) warn("has a map_d, which is not modelled for what lets light through coloured or as glass");
-        if (!(share > 0)) return;
-        material_.transmission = share;
+    void warn_of_opacity_map(const MtlMaterial& from) {
+        if (from.map_d) warn("has a map_d, which is not supported for coloured films and glass");
+    }
+
+    /// Makes the surface a film that transmits light without refraction.
+    void set_film(float transmission, const MtlMaterial& from) {
+        warn_of_opacity_map(from);
+        if (!(transmission > 0)) return;
+        material_.transmission = transmission;
         material_.filter = unit_range(from.Tf);
         material_.is_thin = 1;
         if (material_.model == MaterialModel::phong) material_.ior = 1;
     }
 
-    void set_refraction(float share, const MtlMaterial& from) {
-        if (from.map_d) warn("has a map_d, which is not modelled for what lets light through coloured or as glass");
-        material_.transmission = share > 0 ? share : 1;
+    /// Makes the surface glass. A transmission of 0, for a file without d, stands for 1.
+    void set_refraction(float transmission, const MtlMaterial& from) {
+        warn_of_opacity_map(from);
+        material_.transmission = transmission > 0 ? transmission : 1;
         material_.filter = unit_range(from.Tf);
         material_.ior = from.Ni.value_or(1.5f);
     }
@@ -141,9 +154,9 @@ private:
     void from_gltf(const GltfMaterial& from) {
         material_.model = MaterialModel::metallic_roughness;
         material_.specular = {1, 1, 1};
-        if (const auto& older = from.specular_glossiness) {
-            set_color(older->diffuse_factor, older->diffuse_texture);
-            set_specular_glossiness(*older);
+        if (const auto& gloss = from.specular_glossiness) {
+            set_color(gloss->diffuse_factor, gloss->diffuse_texture);
+            set_specular_glossiness(*gloss);
         } else {
             set_color(from.base_color_factor, from.base_color_texture);
             set_metallic_roughness(from);
@@ -156,6 +169,7 @@ private:
         if (from.unlit) make_unlit("KHR_materials_unlit");
     }
 
+    /// Sets opacity by the alpha mode.
     void set_alpha(const GltfMaterial& from) {
         if (from.alpha_mode == AlphaMode::opaque) return;
         material_.vertex_opacity = colours_.are_transparent;
@@ -172,16 +186,17 @@ private:
         }
     }
 
+    /// Sets the opacity texture, unless it is opaque everywhere or cannot be read.
     void set_opacity_map(const FileTexture& map, TextureUse use) {
         if (!map) return;
         const SceneTextures::Found found = textures_.find(map, use);
-        const bool says_something = has_holes(scene_.textures[static_cast<std::size_t>(found.reference.texture)]);
-        if (!found.is_stand_in && says_something) material_.opacity_texture = found.reference;
+        const bool has_effect = has_holes(scene_.textures[static_cast<std::size_t>(found.reference.texture)]);
+        if (!found.is_stand_in && has_effect) material_.opacity_texture = found.reference;
     }
 
-    /// Makes the surface emit its colour independent of lighting, as a screen does; a camera needs the luminance of
-    /// white for this.
-    void make_unlit(const std::string& why) {
+    /// Makes the surface emit its colour, whatever the lighting, as a screen does. Files do not state the luminance of
+    /// white, which a camera needs. `feature`: the file's feature that requires this, for the warning.
+    void make_unlit(const std::string& feature) {
         constexpr float kWhite = 100;  // cd/m^2, typical of a screen
         material_.model = MaterialModel::phong;
         material_.emission = kWhite * material_.diffuse;
@@ -191,7 +206,7 @@ private:
         material_.diffuse = material_.specular = {0, 0, 0};
         material_.diffuse_texture = material_.specular_texture = {};
         material_.transmission = 0;
-        warn("is unlit (" + why + "): its colour is shown as a screen of 100 cd/m^2 shows it");
+        warn("is unlit (" + feature + "), and emits its colour like a screen of 100 cd/m^2");
     }
 
     void set_metallic_roughness(const GltfMaterial& from) {
@@ -212,18 +227,18 @@ private:
         set_map(&Material::transmission_texture, from.transmission.texture, TextureUse::data);
         if (from.volume.thickness_texture)
             warn(
-                "has a map of its thickness, which the surface itself says here: light goes as far as to its other "
-                "side");
+                "has a thickness map, which is ignored: light travels to the opposite side of the surface, at the "
+                "distance of the geometry");
         material_.is_thin = from.volume.thickness_factor > 0 ? 0 : 1;
-        // KHR_materials_volume: attenuation_color is what is left of white light after attenuationDistance.
+        // KHR_materials_volume: white light has the colour attenuationColor after attenuationDistance.
         const double distance_m = static_cast<double>(from.volume.attenuation_distance) * scale_;
-        const auto absorption = [&](float left) {
-            const double sigma = -std::log(std::max(static_cast<double>(left), 1e-10)) / distance_m;
+        const auto absorption = [&](float transmittance) {
+            const double sigma = -std::log(std::max(static_cast<double>(transmittance), 1e-10)) / distance_m;
             return static_cast<float>(std::clamp(sigma, 0.0, 1e30));
         };
-        const Vec3f left = from.volume.attenuation_color;
+        const Vec3f color = from.volume.attenuation_color;
         if (std::isfinite(distance_m) && !material_.is_thin)
-            material_.absorption = {absorption(left.x), absorption(left.y), absorption(left.z)};
+            material_.absorption = {absorption(color.x), absorption(color.y), absorption(color.z)};
     }
 
     void set_clearcoat(const GltfClearcoat& from) {
@@ -236,8 +251,8 @@ private:
         material_.clearcoat_normal_scale = from.normal_scale;
     }
 
-    // Uses reflectances at normal incidence instead of an index of refraction: ior 0 stands for a reflectance of 1,
-    // which `specular` scales.
+    /// Converts KHR_materials_pbrSpecularGlossiness, which has a reflectance at normal incidence instead of an index of
+    /// refraction: ior 0 stands for a reflectance of 1, which `specular` scales.
     void set_specular_glossiness(const GltfSpecularGlossiness& from) {
         material_.metallic = 0;
         material_.roughness = 1 - from.glossiness_factor;
@@ -251,6 +266,7 @@ private:
         material_.roughness = 1;
     }
 
+    /// Sets the diffuse colour.
     void set_color(Vec3f factor, const FileTexture& texture) {
         material_.diffuse = color_of(factor);
         if (!texture) return;
@@ -259,7 +275,7 @@ private:
         if (found.is_stand_in) material_.diffuse = {1, 1, 1};  // so that the stand-in is visible
     }
 
-    /// Sets a texture; one that cannot be read counts as white.
+    /// Sets a texture; one that cannot be read is left out, which is as if it were white.
     void set_map(TextureReference Material::* member, const FileTexture& map, TextureUse use) {
         if (!map) return;
         const SceneTextures::Found found = textures_.find(map, use);
@@ -286,6 +302,7 @@ private:
     Material material_;
 };
 
+/// Returns the vertex colours of each material of the file.
 std::vector<VertexColours> vertex_colours(const FileScene& file) {
     std::vector<VertexColours> of_vertices;
     for (const FileVertices& v : file.vertices) of_vertices.push_back({!v.colours.empty(), are_transparent(v.colours)});
@@ -293,9 +310,9 @@ std::vector<VertexColours> vertex_colours(const FileScene& file) {
     for (const FileMesh& mesh : file.meshes) {
         if (!of_vertices[mesh.vertices].exist) continue;
         for (const Triangle& triangle : mesh.triangles) {
-            VertexColours& all = of_materials[triangle.material];
-            all.exist = true;
-            all.are_transparent |= of_vertices[mesh.vertices].are_transparent;
+            VertexColours& colours = of_materials[triangle.material];
+            colours.exist = true;
+            colours.are_transparent |= of_vertices[mesh.vertices].are_transparent;
         }
     }
     return of_materials;

@@ -12,6 +12,7 @@ namespace {
 
 const LeavesOut kLeavesOutNothing = [](std::uint32_t, const Affine<double>&) { return LeftOut::nothing; };
 
+/// True if a node or one of its descendants has meshes.
 bool has_triangles(const FileScene& file, std::uint32_t node) {
     for (std::uint32_t i = node; i < file.nodes[node].end; ++i)
         if (file.nodes[i].mesh_count > 0) return true;
@@ -23,25 +24,25 @@ bool has_triangles(const FileScene& file, std::uint32_t node) {
 SceneObjects::SceneObjects(const FileScene& file, double scale, const std::vector<std::string>& names,
                            Checkpoint& checkpoint)
     : file_(file), scale_(scale), checkpoint_(checkpoint), names_(names.begin(), names.end()) {
-    std::map<Meshes, std::size_t> uses;
-    std::set<std::string> found;
+    std::map<Meshes, std::size_t> use_counts;
+    std::set<std::string> node_names;
     for (std::uint32_t i = 0; i < file.nodes.size(); ++i) {
         checkpoint.pass();
-        if (!names.empty()) found.insert(file.nodes[i].name);
-        if (file.nodes[i].mesh_count > 0) ++uses[meshes_of(i)];
+        if (!names.empty()) node_names.insert(file.nodes[i].name);
+        if (file.nodes[i].mesh_count > 0) ++use_counts[meshes_of(i)];
     }
     for (const std::string& name : names)
-        if (!found.contains(name))
+        if (!node_names.contains(name))
             throw SceneFileError(file.path + ": has no node " + in_quotes(name) +
-                                 did_you_mean(name, {found.begin(), found.end()}));
+                                 did_you_mean(name, {node_names.begin(), node_names.end()}));
     shows_.assign(file.nodes.size(), false);
     for (auto i = static_cast<std::uint32_t>(file.nodes.size()); i-- > 0;) {
         const FileNode& node = file.nodes[i];
         if (node.mesh_count > 0 || node.light >= 0) shows_[i] = true;
         if (shows_[i] && node.parent != kNoParent) shows_[node.parent] = true;
     }
-    for (const auto& [meshes, times] : uses)
-        if ((times - 1) * triangle_count(meshes) >= kSharedTriangles) shared_.insert(meshes);
+    for (const auto& [meshes, count] : use_counts)
+        if ((count - 1) * triangle_count(meshes) >= kMinSavedTriangles) shared_.insert(meshes);
 }
 
 std::size_t SceneObjects::triangle_count(const Meshes& meshes) const {
@@ -70,20 +71,21 @@ void SceneObjects::add(std::uint32_t node, const Affine<double>& transform, Scen
 
 void SceneObjects::add_node(std::uint32_t node, const Affine<double>& transform, std::ptrdiff_t part_of,
                             Scene& static_geometry) {
-    const std::ptrdiff_t before = std::ssize(instances_);
+    const std::ptrdiff_t next_instance = std::ssize(instances_);
     const bool is_named = names_.contains(file_.nodes[node].name);
-    const LeavesOut objects_below = [&](std::uint32_t number, const Affine<double>&) {
-        const bool is_own = moves(number) || (!is_named && names_.contains(file_.nodes[number].name));
-        return number != node && is_own ? LeftOut::all : LeftOut::nothing;
+    // Descendants that become instances of their own.
+    const LeavesOut parts = [&](std::uint32_t index, const Affine<double>&) {
+        const bool is_part = moves(index) || (!is_named && names_.contains(file_.nodes[index].name));
+        return index != node && is_part ? LeftOut::all : LeftOut::nothing;
     };
-    const auto scene = read_object(node, transform, objects_below, static_geometry);
+    const auto scene = read_object(node, transform, parts, static_geometry);
     if (!scene->triangles.empty() || !scene->points.empty())
         add_scene(scene, node, transform, part_of, static_geometry);
-    const std::ptrdiff_t whole = std::ssize(instances_) > before ? before : part_of;
+    const std::ptrdiff_t parent = std::ssize(instances_) > next_instance ? next_instance : part_of;
     visit_nodes({file_, scale_, node, file_.nodes[node].end, transform, checkpoint_},
-                [&](std::uint32_t number, const Affine<double>& below) {
-                    if (objects_below(number, below) == LeftOut::nothing) return true;
-                    add_node(number, below, whole, static_geometry);
+                [&](std::uint32_t part, const Affine<double>& part_transform) {
+                    if (parts(part, part_transform) == LeftOut::nothing) return true;
+                    add_node(part, part_transform, parent, static_geometry);
                     return false;
                 });
 }
@@ -92,28 +94,29 @@ void SceneObjects::add_scene(const std::shared_ptr<Scene>& scene, std::uint32_t 
                              std::ptrdiff_t part_of, Scene& static_geometry) {
     static_geometry.warnings.insert(static_geometry.warnings.end(), scene->warnings.begin(), scene->warnings.end());
     scene->warnings.clear();
-    const AnimatedTransform moved = placement(node, transform);
-    if (moved.motion == nullptr && file_.nodes[node].motion >= 0 && !transform_error(moved.scene_from_object).empty()) {
+    const AnimatedTransform animated = placement(node, transform);
+    if (animated.motion == nullptr && file_.nodes[node].motion >= 0 &&
+        !transform_error(animated.scene_from_object).empty()) {
         static_geometry.warnings.push_back(file_.path + ": node " + in_quotes(file_.nodes[node].name) +
-                                           " is scaled to nothing while it moves, and left out");
+                                           " is scaled to zero while it moves, and is left out");
         return;
     }
-    Instance instance{nullptr, moved.scene_from_object, file_.nodes[node].name, part_of};
-    instance.motion = moved.motion;
+    Instance instance{nullptr, animated.scene_from_object, file_.nodes[node].name, part_of};
+    instance.motion = animated.motion;
     instances_.push_back({scene, instance});
 }
 
 Affine<double> SceneObjects::transform_at(std::uint32_t node, double time) {
-    // Limit on matrix products: a chain of moving nodes costs its length for each key of each node.
-    constexpr double kMost = 3e8;
+    // Limit on the time of reading: for a chain of n moving nodes, each key of each node requires n matrix products.
+    constexpr double kMaxProducts = 3e8;
     Affine<double> map;
     for (std::uint32_t i = node; i != kNoParent; i = file_.nodes[i].parent) {
-        const FileNode& at = file_.nodes[i];
-        map = (at.motion >= 0 ? file_.motions[static_cast<std::size_t>(at.motion)].parent_from_node(time)
-                              : at.parent_from_node) *
+        const FileNode& ancestor = file_.nodes[i];
+        map = (ancestor.motion >= 0 ? file_.motions[static_cast<std::size_t>(ancestor.motion)].parent_from_node(time)
+                                    : ancestor.parent_from_node) *
               map;
         checkpoint_.pass();
-        if (++matrices_ > kMost)
+        if (++products_ > kMaxProducts)
             throw SceneFileError(file_.path + ": its animation has too many keys on nodes that move with each other");
     }
     map.origin = scale_ * map.origin;
@@ -124,8 +127,8 @@ AnimatedTransform SceneObjects::placement(std::uint32_t node, const Affine<doubl
     std::vector<double> times;
     for (std::uint32_t i = node; i != kNoParent; i = file_.nodes[i].parent) {
         if (file_.nodes[i].motion < 0) continue;
-        const std::vector<double> more = file_.motions[static_cast<std::size_t>(file_.nodes[i].motion)].times();
-        times.insert(times.end(), more.begin(), more.end());
+        const std::vector<double> node_times = file_.motions[static_cast<std::size_t>(file_.nodes[i].motion)].times();
+        times.insert(times.end(), node_times.begin(), node_times.end());
     }
     if (times.empty()) {
         Affine<double> scaled = transform;
@@ -154,35 +157,35 @@ std::shared_ptr<Scene> SceneObjects::read_object(std::uint32_t node, const Affin
     else if (scene->points.empty() && names_.contains(file_.nodes[node].name))
         throw SceneFileError(file_.path + ": node " + in_quotes(file_.nodes[node].name) +
                              " holds neither triangles nor a light");
-    // A directional light has no position: it lights the whole scene, in its current direction.
-    Scene in_place;
-    read_lights(in_place, {file_, scale_, node, end, transform, checkpoint_}, leaves_out);
-    static_geometry.suns.insert(static_geometry.suns.end(), in_place.suns.begin(), in_place.suns.end());
+    // A directional light has no position: it illuminates the whole scene, in its direction in the scene.
+    Scene in_scene_frame;
+    read_lights(in_scene_frame, {file_, scale_, node, end, transform, checkpoint_}, leaves_out);
+    static_geometry.suns.insert(static_geometry.suns.end(), in_scene_frame.suns.begin(), in_scene_frame.suns.end());
     scene->suns.clear();
     return scene;
 }
 
 std::shared_ptr<Scene> SceneObjects::read_meshes(std::uint32_t node) const {
     auto scene = std::make_shared<Scene>();
-    // Without the nodes below, which are handled on their own.
+    // The part is this node only, because its descendants are handled on their own.
     read_geometry(*scene, {file_, scale_, node, node + 1, Affine<double>(), checkpoint_}, kLeavesOutNothing);
     return scene;
 }
 
 std::vector<Instance> SceneObjects::finish(const Scene& materials) {
-    std::set<Scene*> done;
+    std::set<Scene*> has_materials;
     std::vector<Instance> instances;
     for (auto& [scene, instance] : instances_) {
         checkpoint_.pass();
-        if (done.insert(scene.get()).second) keep_used_materials(*scene, materials);
+        if (has_materials.insert(scene.get()).second) keep_used_materials(*scene, materials);
         instance.object = scene;
         instances.push_back(instance);
     }
     return instances;
 }
 
-/// Removes the textures whose set of texture coordinates the scene's vertices lack.
-void forget_textures(Material& material, const Scene& scene) {
+/// Removes the textures for which the scene's vertices have no texture coordinates.
+void drop_textures_without_uvs(Material& material, const Scene& scene) {
     for (const auto member : kMaterialTextures) {
         TextureReference& texture = material.*member;
         if ((texture.uv_set == 0 ? scene.uvs : scene.second_uvs).empty()) texture = {};
@@ -193,12 +196,12 @@ void keep_all_materials(Scene& scene, Scene from) {
     scene.materials = std::move(from.materials);
     scene.material_names = std::move(from.material_names);
     scene.textures = std::move(from.textures);
-    for (Material& material : scene.materials) forget_textures(material, scene);
+    for (Material& material : scene.materials) drop_textures_without_uvs(material, scene);
 }
 
 void keep_used_materials(Scene& scene, const Scene& from) {
-    std::map<std::uint32_t, std::uint32_t> materials;
-    std::map<std::int32_t, std::int32_t> textures;
+    std::map<std::uint32_t, std::uint32_t> materials;  // from old to new indices
+    std::map<std::int32_t, std::int32_t> textures;  // from old to new indices
     std::vector<Material> used;
     scene.material_names.clear();
     for (Triangle& triangle : scene.triangles) {
@@ -211,14 +214,14 @@ void keep_used_materials(Scene& scene, const Scene& from) {
         triangle.material = material->second;
     }
     for (Material& material : used) {
-        forget_textures(material, scene);
+        drop_textures_without_uvs(material, scene);
         for (const auto member : kMaterialTextures) {
-            std::int32_t& number = (material.*member).texture;
-            if (number < 0) continue;
+            std::int32_t& node_index = (material.*member).texture;
+            if (node_index < 0) continue;
             const auto [texture, is_new] =
-                textures.try_emplace(number, static_cast<std::int32_t>(scene.textures.size()));
-            if (is_new) scene.textures.push_back(from.textures[static_cast<std::size_t>(number)]);
-            number = texture->second;
+                textures.try_emplace(node_index, static_cast<std::int32_t>(scene.textures.size()));
+            if (is_new) scene.textures.push_back(from.textures[static_cast<std::size_t>(node_index)]);
+            node_index = texture->second;
         }
     }
     scene.materials = std::move(used);

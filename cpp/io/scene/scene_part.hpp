@@ -9,8 +9,8 @@
 
 namespace realcam::io {
 
-/// Nodes `first` to `end` - 1 of a file. `transform`, if present, replaces the transforms of nodes whose parents are
-/// not among them. The file and the checkpoint have to outlive it.
+/// Part of a file: nodes `first` to `end` - 1. `transform`, if present, replaces the transforms of the nodes whose
+/// parents are not in the part. The file and the checkpoint must outlive it.
 struct ScenePart {
     const FileScene& file;
     double scale;  ///< metres per unit of the file
@@ -21,10 +21,11 @@ struct ScenePart {
 
 /// Part of a node that is left out: nothing, its meshes, or the node with all its descendants.
 enum class LeftOut { nothing, meshes, all };
+/// Function that decides what of a node is left out. `transform`: from the node to the scene, in units of the file.
 using LeavesOut = std::function<LeftOut(std::uint32_t node, const Affine<double>& transform)>;
 
-/// Calls `visit(node, transform)` for the nodes of a part, from the top; if it returns false, the descendants are
-/// skipped.
+/// Calls `visit(node, transform)` for the nodes of a part, parents before children; if it returns false, the
+/// descendants are skipped. `node`: index; `transform`: from the node to the scene, in units of the file.
 template <class Visit>
 void visit_nodes(const ScenePart& part, Visit&& visit) {
     std::vector<Affine<double>> transforms(part.end - part.first);

@@ -8,11 +8,11 @@
 
 namespace realcam::io {
 
-/// Maps a vertex's texture coordinates to those in a picture. Identity by default.
+/// Affine map from a vertex's texture coordinates to those in a picture. Identity by default.
 class TextureTransform {
 public:
     TextureTransform() = default;
-    /// Transform of glTF's KHR_texture_transform, with v downwards: scale, then rotation, then offset.
+    /// Transform of glTF's KHR_texture_transform, with v downwards: scale, then rotation (radians), then offset.
     TextureTransform(double scale_u, double scale_v, double rotation, double offset_u, double offset_v) {
         const double c = std::cos(rotation), s = std::sin(rotation);
         from_u_ = {c * scale_u, -s * scale_u, 0};
@@ -32,7 +32,7 @@ public:
     }
 
     /// Returns the transform for the renderer, with the index of the texture in the scene.
-    TextureReference of(std::int32_t texture) const {
+    TextureReference reference(std::int32_t texture) const {
         const auto f = [](double v) { return static_cast<float>(v); };
         return {texture,
                 {f(from_u_.x), f(-from_v_.x), f(from_v_.x + offset_.x)},
@@ -41,7 +41,7 @@ public:
 
     /// True if the renderer's floats can represent the transform.
     bool is_finite() const {
-        const TextureReference r = of(0);
+        const TextureReference r = reference(0);
         for (const float v : {r.to_u.x, r.to_u.y, r.to_u.z, r.to_v.x, r.to_v.y, r.to_v.z})
             if (!std::isfinite(v)) return false;
         return true;
@@ -52,6 +52,7 @@ public:
     }
 
 private:
+    /// The coordinates, with v downwards, are u from_u_ + v from_v_ + offset_; z is not used.
     Vec3d from_u_ = {1, 0, 0}, from_v_ = {0, 1, 0}, offset_ = {0, 0, 0};
 };
 
@@ -64,14 +65,15 @@ struct FileTexture {
 
     /// Returns the reference for the renderer; `texture`: index of the picture in the scene's textures.
     TextureReference reference(std::int32_t texture) const {
-        TextureReference out = transform.of(texture);
+        TextureReference out = transform.reference(texture);
         out.sampler = sampler;
         out.uv_set = static_cast<std::int8_t>(uv_set);
         return out;
     }
-    /// True if both are mapped to a surface in the same way.
-    bool lies_as(const FileTexture& b) const { return transform == b.transform && sampler == b.sampler; }
+    /// True if both textures have the same transform and sampler.
+    bool has_same_mapping(const FileTexture& b) const { return transform == b.transform && sampler == b.sampler; }
 
+    /// True if there is a texture.
     explicit operator bool() const { return picture >= 0; }
 };
 

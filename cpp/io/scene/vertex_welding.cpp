@@ -5,28 +5,20 @@
 namespace realcam::io {
 namespace {
 
+/// Returns the state of a hash after another value.
 std::uint64_t mix(std::uint64_t state, std::uint64_t value) {
     state = (state ^ value) * 0x9e3779b97f4a7c15ull;
     return state ^ (state >> 29);
 }
 
-bool same(Vec3d a, Vec3d b) {
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-bool same(Vec3f a, Vec3f b) {
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-bool same(Vec2f a, Vec2f b) {
-    return a.x == b.x && a.y == b.y;
-}
-
+/// Replaces a list by its elements at these indices; an empty list stays empty.
 template <class T>
-void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
+void select_elements(std::vector<T>& values, const std::vector<std::uint32_t>& indices) {
     if (values.empty()) return;
-    std::vector<T> fewer;
-    fewer.reserve(kept.size());
-    for (const std::uint32_t i : kept) fewer.push_back(values[i]);
-    values = std::move(fewer);
+    std::vector<T> selected;
+    selected.reserve(indices.size());
+    for (const std::uint32_t i : indices) selected.push_back(values[i]);
+    values = std::move(selected);
 }
 
 }  // namespace
@@ -50,10 +42,10 @@ void weld_vertices(Scene& scene, Checkpoint& checkpoint) {
         return mix(state, state >> 32);
     };
     const auto equal = [&](std::size_t a, std::size_t b) {
-        return same(scene.positions_m[a], scene.positions_m[b]) &&
-               (scene.normals.empty() || same(scene.normals[a], scene.normals[b])) &&
-               (scene.uvs.empty() || same(scene.uvs[a], scene.uvs[b])) &&
-               (scene.second_uvs.empty() || same(scene.second_uvs[a], scene.second_uvs[b])) &&
+        return scene.positions_m[a] == scene.positions_m[b] &&
+               (scene.normals.empty() || scene.normals[a] == scene.normals[b]) &&
+               (scene.uvs.empty() || scene.uvs[a] == scene.uvs[b]) &&
+               (scene.second_uvs.empty() || scene.second_uvs[a] == scene.second_uvs[b]) &&
                (scene.colors.empty() || scene.colors[a] == scene.colors[b]);
     };
     const std::vector<std::uint32_t> first = first_equal(scene.positions_m.size(), hash, equal, checkpoint);
@@ -63,22 +55,22 @@ void weld_vertices(Scene& scene, Checkpoint& checkpoint) {
         checkpoint.pass();
         for (const std::uint32_t v : t.vertices) used[first[v]] = true;
     }
-    std::vector<std::uint32_t> kept, number(first.size(), 0);
+    std::vector<std::uint32_t> kept, new_index(first.size(), 0);
     for (std::uint32_t v = 0; v < first.size(); ++v) {
         if (!used[v]) continue;
-        number[v] = static_cast<std::uint32_t>(kept.size());
+        new_index[v] = static_cast<std::uint32_t>(kept.size());
         kept.push_back(v);
     }
     if (kept.size() == first.size()) return;
     for (Triangle& t : scene.triangles) {
         checkpoint.pass();
-        for (std::uint32_t& v : t.vertices) v = number[first[v]];
+        for (std::uint32_t& v : t.vertices) v = new_index[first[v]];
     }
-    keep(scene.positions_m, kept);
-    keep(scene.normals, kept);
-    keep(scene.uvs, kept);
-    keep(scene.second_uvs, kept);
-    keep(scene.colors, kept);
+    select_elements(scene.positions_m, kept);
+    select_elements(scene.normals, kept);
+    select_elements(scene.uvs, kept);
+    select_elements(scene.second_uvs, kept);
+    select_elements(scene.colors, kept);
 }
 
 }  // namespace realcam::io

@@ -28,9 +28,9 @@ const BoundingBox& ObjectBoxes::of(const Scene& object) {
 
 BoundingBox ObjectBoxes::of(const Instance& instance) {
     BoundingBox box;
-    const BoundingBox& own = of(*instance.object);
-    for (int corner = 0; corner < 8 && !own.empty(); ++corner)
-        box.add(instance.scene_from_object.point(own.corner(corner)));
+    const BoundingBox& object_box = of(*instance.object);
+    for (int corner = 0; corner < 8 && !object_box.empty(); ++corner)
+        box.add(instance.scene_from_object.point(object_box.corner(corner)));
     return box;
 }
 
@@ -38,9 +38,9 @@ BoundingBox bounding_box(const Assembly& assembly) {
     BoundingBox box;
     add_triangles(box, *assembly.static_geometry, {});
     ObjectBoxes objects;
-    const bool every = asks_every_triangle(assembly);
+    const bool is_exact = asks_every_triangle(assembly);
     for (const Instance& instance : assembly.instances) {
-        if (every)
+        if (is_exact)
             add_triangles(box, *instance.object, instance.scene_from_object);
         else
             box.add(objects.of(instance));

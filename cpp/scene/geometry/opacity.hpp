@@ -20,11 +20,14 @@ REALCAM_INLINE float opacity_at(const MeshView& mesh, const Triangle& triangle, 
     return opacity;
 }
 
-// A ray's number seeds its decisions: independent for each ray, and identical in all backends. It is odd for shadow
-// rays and even for path rays.
+// A ray's number is the seed of its random decisions: independent for each ray, and identical in all backends. It is
+// odd for shadow rays and even for path rays.
+
+/// Returns the number of a path ray (even, not 0) from a random hash.
 REALCAM_INLINE std::uint32_t path_ray_number(std::uint32_t hash) {
     return (hash & ~1u) | 2u;
 }
+/// Returns the number of a shadow ray (odd) from a random hash.
 REALCAM_INLINE std::uint32_t shadow_ray_number(std::uint32_t hash) {
     return hash | 1u;
 }
@@ -33,31 +36,34 @@ REALCAM_INLINE std::uint32_t shadow_ray_number(std::uint32_t hash) {
 /// shadow catchers. A single ray that represents a whole pixel must not depend on chance.
 inline constexpr std::uint32_t kDecidedRay = 0;
 
-/// True if a ray stops at a hit on a mesh.
-REALCAM_INLINE bool stops_ray(const MeshView& mesh, Hit hit, std::uint32_t ray) {
+/// True if the ray of this number stops at a hit on a mesh. Shadow rays pass shadow catchers, which so cast no shadows.
+REALCAM_INLINE bool stops_ray(const MeshView& mesh, Hit hit, std::uint32_t ray_number) {
     const Triangle& triangle = mesh.triangles[hit.triangle];
     const Material& material = mesh.materials[triangle.material];
     if (!material.has_holes()) return true;
-    if (material.only_shadows && ((ray & 1u) || ray == kDecidedRay)) return false;
-    if (ray == kDecidedRay) return opacity_at(mesh, triangle, hit) >= 0.5f;
-    return unit_float(hash32(hash32(ray, hit.triangle), hit.instance)) < opacity_at(mesh, triangle, hit);
+    if (material.only_shadows && ((ray_number & 1u) || ray_number == kDecidedRay)) return false;
+    if (ray_number == kDecidedRay) return opacity_at(mesh, triangle, hit) >= 0.5f;
+    return unit_float(hash32(hash32(ray_number, hit.triangle), hit.instance)) < opacity_at(mesh, triangle, hit);
 }
 
-// Properties of a ray, apart from its origin and direction, that traversal needs: whether it stops at a hit, and the
-// time at which it sees moving instances.
+// Properties of a ray, apart from its origin and direction, that traversal needs: how to decide whether it stops at a
+// hit, and the time at which it sees moving instances.
 
 /// Ray in a scene without holes and motion: it stops at every hit.
 struct PlainSceneRay {
     static constexpr bool is_plain = true;
 };
 
+/// Ray in a scene of any kind.
 struct AnySceneRay {
     static constexpr bool is_plain = false;
     const SceneView& scene;
-    std::uint32_t number;  ///< seed of its decisions at holes (opacity.hpp)
+    std::uint32_t number;  ///< seed of its decisions at holes
     float time;  ///< fraction of the exposure
 
+    /// True if the ray stops at the hit.
     REALCAM_INLINE bool stops(Hit hit) const { return stops_ray(mesh_of(scene, hit.instance), hit, number); }
+    /// Returns the transform from render space into the frame of the instance's object, at the ray's time.
     REALCAM_INLINE InverseAffine<float> into_object(std::uint32_t instance) const {
         return instance_at(scene, instance, time).object_from_render;
     }

@@ -21,38 +21,39 @@ SplitTriangles::SplitTriangles(const Scene& scene, const Affine<double>& frame, 
         const Triangle t = scene.triangles[i];
         if (!may_be_too_large(t)) continue;
         parent_ = i;
-        first_piece_ = true;
-        split(t, kMostCuts);
+        is_first_piece_ = true;
+        split(t, kMaxDepth);
     }
 }
 
 Vec3d SplitTriangles::position(std::size_t vertex) const {
-    const std::size_t given = scene_.positions_m.size();
-    return vertex < given ? frame_.point(scene_.positions_m[vertex]) : added_[vertex - given];
+    const std::size_t in_scene = scene_.positions_m.size();
+    return vertex < in_scene ? frame_.point(scene_.positions_m[vertex]) : added_positions_[vertex - in_scene];
 }
 
 std::size_t SplitTriangles::parent(std::size_t triangle) const {
-    const std::size_t given = scene_.triangles.size();
-    return triangle < given ? triangle : parents_[triangle - given];
+    const std::size_t in_scene = scene_.triangles.size();
+    return triangle < in_scene ? triangle : parents_[triangle - in_scene];
 }
 
 bool SplitTriangles::may_be_too_large(const Triangle& t) const {
-    constexpr double kFar = (1 + 1 / kRatio) * (1 + 1 / kRatio);
+    constexpr double kFarSquared = (1 + 1 / kRatio) * (1 + 1 / kRatio);
     const Vec3d a = position(t.vertices[0]), b = position(t.vertices[1]), c = position(t.vertices[2]);
     const double longest = longest_squared(a, b, c);
-    return std::min({dot(a, a), dot(b, b), dot(c, c)}) < kFar * longest &&
-           longest > kRatio * kRatio * kNearest * kNearest;
+    return std::min({dot(a, a), dot(b, b), dot(c, c)}) < kFarSquared * longest &&
+           longest > kRatio * kRatio * kMinDistance_m * kMinDistance_m;
 }
 
 bool SplitTriangles::too_long(Vec3d p, Vec3d q) {
     if (q.x < p.x || (q.x == p.x && (q.y < p.y || (q.y == p.y && q.z < p.z)))) std::swap(p, q);
     const Vec3d d = q - p;
     const double squared = dot(d, d);
-    const double share = squared > 0 ? std::clamp(-dot(p, d) / squared, 0.0, 1.0) : 0.0;
-    return std::sqrt(squared) > kRatio * std::max(length(p + share * d), kNearest);
+    // p + t d is the point of the edge that is nearest to the origin.
+    const double t = squared > 0 ? std::clamp(-dot(p, d) / squared, 0.0, 1.0) : 0.0;
+    return std::sqrt(squared) > kRatio * std::max(length(p + t * d), kMinDistance_m);
 }
 
-std::array<double, 3> SplitTriangles::foot(Vec3d a, Vec3d b, Vec3d c) {
+std::array<double, 3> SplitTriangles::projected_origin(Vec3d a, Vec3d b, Vec3d c) {
     const Vec3d u = b - a, v = c - a;
     const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), ua = -dot(u, a), va = -dot(v, a);
     const double determinant = uu * vv - uv * uv;
@@ -60,9 +61,9 @@ std::array<double, 3> SplitTriangles::foot(Vec3d a, Vec3d b, Vec3d c) {
     return {1 - s - t, s, t};
 }
 
-void SplitTriangles::split(const Triangle& t, int cuts_left) {
+void SplitTriangles::split(const Triangle& t, int depth_left) {
     const std::array<Vec3d, 3> p{position(t.vertices[0]), position(t.vertices[1]), position(t.vertices[2])};
-    int longest = -1;
+    int longest = -1;  // first corner of the longest edge among those that are too long
     double length_squared = 0;
     for (int i = 0; i < 3; ++i) {
         const Vec3d from = p[static_cast<std::size_t>(i)], to = p[static_cast<std::size_t>((i + 1) % 3)];
@@ -72,29 +73,30 @@ void SplitTriangles::split(const Triangle& t, int cuts_left) {
             length_squared = squared;
         }
     }
-    if (cuts_left == 0) return keep(t);
-    if (longest >= 0) return halve(t, longest, cuts_left);
-    const std::array<double, 3> w = foot(p[0], p[1], p[2]);
-    if (!(w[0] > 1e-6 && w[1] > 1e-6 && w[2] > 1e-6)) return keep(t);
-    const double near = std::max(length(w[0] * p[0] + w[1] * p[1] + w[2] * p[2]), kNearest);
-    if (!(longest_squared(p[0], p[1], p[2]) > kRatio * kRatio * near * near)) return keep(t);
+    if (depth_left == 0) return add_piece(t);
+    if (longest >= 0) return halve(t, longest, depth_left);
+    const std::array<double, 3> w = projected_origin(p[0], p[1], p[2]);
+    constexpr double kMinWeight = 1e-6;  // closer to an edge, pieces would be degenerate
+    if (!(w[0] > kMinWeight && w[1] > kMinWeight && w[2] > kMinWeight)) return add_piece(t);
+    const double distance = std::max(length(w[0] * p[0] + w[1] * p[1] + w[2] * p[2]), kMinDistance_m);
+    if (!(longest_squared(p[0], p[1], p[2]) > kRatio * kRatio * distance * distance)) return add_piece(t);
     const std::uint32_t middle = add_vertex(t, w);
     for (std::uint32_t corner = 0; corner < 3; ++corner) {
         Triangle part = t;
         part.vertices[corner] = middle;
-        split(part, cuts_left - 1);
+        split(part, depth_left - 1);
     }
 }
 
-void SplitTriangles::halve(const Triangle& t, int corner, int cuts_left) {
+void SplitTriangles::halve(const Triangle& t, int corner, int depth_left) {
     std::array<double, 3> weights{0.5, 0.5, 0.5};
     weights[static_cast<std::size_t>((corner + 2) % 3)] = 0;
     const std::uint32_t middle = add_vertex(t, weights);
     Triangle first = t, second = t;
     first.vertices[(corner + 1) % 3] = middle;
     second.vertices[corner] = middle;
-    split(first, cuts_left - 1);
-    split(second, cuts_left - 1);
+    split(first, depth_left - 1);
+    split(second, depth_left - 1);
 }
 
 std::uint32_t SplitTriangles::add_vertex(const Triangle& t, std::array<double, 3> weights) {
@@ -114,19 +116,19 @@ std::uint32_t SplitTriangles::add_vertex(const Triangle& t, std::array<double, 3
         colors_.push_back(
             {w[0] * a.color + w[1] * b.color + w[2] * c.color, w[0] * a.alpha + w[1] * b.alpha + w[2] * c.alpha});
     }
-    added_.push_back(weights[0] * position(v[0]) + weights[1] * position(v[1]) + weights[2] * position(v[2]));
+    added_positions_.push_back(weights[0] * position(v[0]) + weights[1] * position(v[1]) + weights[2] * position(v[2]));
     return static_cast<std::uint32_t>(position_count() - 1);
 }
 
-void SplitTriangles::keep(const Triangle& t) {
+void SplitTriangles::add_piece(const Triangle& t) {
     if (!any()) return;
-    if (first_piece_) {
+    if (is_first_piece_) {
         triangles_[parent_] = t;
     } else {
         triangles_.push_back(t);
         parents_.push_back(parent_);
     }
-    first_piece_ = false;
+    is_first_piece_ = false;
 }
 
 void SplitTriangles::copy_lists() {

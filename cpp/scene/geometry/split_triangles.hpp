@@ -13,6 +13,7 @@ namespace REALCAM_NAMESPACE {
 // objects that stand on it: a plane of 1e7 m would be half a metre off below the camera. Such triangles are split into
 // pieces about as large as their distance, whose corners are accurate enough.
 
+/// Treatment of triangles that are much larger than their distance: split them (cut), or leave them as they are (keep).
 enum class LargeTriangles { cut, keep };
 
 /// Translation into a frame whose origin is `origin_m`.
@@ -22,6 +23,8 @@ Affine<double> relative_to(Vec3d origin_m);
 /// the first piece replaces the triangle, the others are appended. Normals stay in the scene's frame.
 class SplitTriangles {
 public:
+    /// `frame`: transform from scene space, in which distances are measured from the origin. The scene must outlive
+    /// this object. Throws Cancelled if `checkpoint` does.
     SplitTriangles(const Scene& scene, const Affine<double>& frame, LargeTriangles large, Checkpoint& checkpoint);
 
     /// True if any triangle was split; otherwise the lists are the scene's own.
@@ -32,10 +35,10 @@ public:
     const std::vector<Vec2f>& second_uvs() const { return any() ? second_uvs_ : scene_.second_uvs; }
     const std::vector<VertexColor>& colors() const { return any() ? colors_ : scene_.colors; }
 
-    std::size_t position_count() const { return scene_.positions_m.size() + added_.size(); }
-    /// Position in the new frame.
+    std::size_t position_count() const { return scene_.positions_m.size() + added_positions_.size(); }
+    /// Position of a vertex in the new frame.
     Vec3d position(std::size_t vertex) const;
-    /// Index of the scene's triangle from which a triangle was split.
+    /// Index of the scene's triangle from which a triangle was split; the same index if it was not split.
     std::size_t parent(std::size_t triangle) const;
 
 private:
@@ -44,10 +47,11 @@ private:
     /// down all rays.
     static constexpr double kRatio = 128;
     /// Least distance of scene geometry, in metres: closer points would be inside the lens.
-    static constexpr double kNearest = 0.01;
+    static constexpr double kMinDistance_m = 0.01;
     /// Limit of the recursion depth, beyond what the range of coordinates can require.
-    static constexpr int kMostCuts = 200;
+    static constexpr int kMaxDepth = 200;
 
+    /// Squared length of the longest edge.
     static double longest_squared(Vec3d a, Vec3d b, Vec3d c) {
         return std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
     }
@@ -55,37 +59,40 @@ private:
     /// Quick rejection by the corners: false if the nearest corner is farther away than 1 + 1 / kRatio edge lengths.
     bool may_be_too_large(const Triangle& t) const;
 
-    /// Independent of the order of the two ends: neighbours split their common edge in the same way, and no crack
-    /// opens.
+    /// True if an edge is longer than kRatio times its distance. Independent of the order of the two ends: neighbours
+    /// split their common edge in the same way, and no crack opens.
     static bool too_long(Vec3d p, Vec3d q);
 
-    /// Barycentric coordinates of the origin's projection onto the plane; negative ones if it lies outside the
-    /// triangle.
-    static std::array<double, 3> foot(Vec3d a, Vec3d b, Vec3d c);
+    /// Barycentric coordinates of the origin's projection onto the plane of a triangle; some are negative if it lies
+    /// outside the triangle.
+    static std::array<double, 3> projected_origin(Vec3d a, Vec3d b, Vec3d c);
 
     /// Splits edges that are too long, the longest first; then, if the origin is above the interior, splits at its
-    /// projection.
-    void split(const Triangle& t, int cuts_left);
+    /// projection. `depth_left`: levels of recursion that remain.
+    void split(const Triangle& t, int depth_left);
 
     /// Splits at the midpoint of the edge that starts at this corner.
-    void halve(const Triangle& t, int corner, int cuts_left);
+    void halve(const Triangle& t, int corner, int depth_left);
 
+    /// Adds a vertex at these barycentric coordinates of a triangle and returns its index.
     std::uint32_t add_vertex(const Triangle& t, std::array<double, 3> weights);
 
-    void keep(const Triangle& t);
+    /// Stores a triangle that is split no further.
+    void add_piece(const Triangle& t);
 
+    /// Copies the scene's lists before the first change.
     void copy_lists();
 
     const Scene& scene_;
     Affine<double> frame_;
-    std::vector<Vec3d> added_;
+    std::vector<Vec3d> added_positions_;
     std::vector<Triangle> triangles_;
     std::vector<Vec3f> normals_;
     std::vector<Vec2f> uvs_, second_uvs_;
     std::vector<VertexColor> colors_;
-    std::vector<std::uint32_t> parents_;
-    std::uint32_t parent_ = 0;
-    bool first_piece_ = true;
+    std::vector<std::uint32_t> parents_;  ///< for each appended triangle
+    std::uint32_t parent_ = 0;  ///< triangle that is being split
+    bool is_first_piece_ = true;  ///< no piece of it has been stored yet
 };
 
 }  // namespace REALCAM_NAMESPACE

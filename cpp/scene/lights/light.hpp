@@ -7,13 +7,17 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Solid-angle density of a point sampled uniformly by area on an area light, at this distance; `cosine` is that
-/// between the light's normal and the direction to the receiver.
+// Light sampling: choice of a light, a point on it or a direction to it, and the densities for multiple importance
+// sampling. At a receiver, the kinds of light are the point and area lights together (the light tree), each sun, and
+// the environment.
+
+/// Solid-angle density of a point sampled uniformly by area on an area light, at this distance; `cosine`: between the
+/// light's normal and the direction to the receiver.
 REALCAM_INLINE float area_light_pdf(float area, float distance_squared, float cosine) {
     return distance_squared / (area * cosine);
 }
 
-/// Radiance that an area light emits at barycentric coordinates (along_u, along_v).
+/// Radiance, cd/m^2, that an area light emits at barycentric coordinates (along_u, along_v).
 template <SceneKind scene_kind>
 REALCAM_INLINE Color emitted_radiance(const SceneView& scene, const AreaLight& light, float along_u, float along_v) {
     if constexpr (scene_kind == SceneKind::plain) return light.radiance;
@@ -50,9 +54,9 @@ REALCAM_INLINE AreaLight area_light_at(const SceneView& scene, const AreaLight& 
 
 /// Returns the area light of this index at a time of the exposure; only scenes of SceneKind::any have moving ones.
 template <SceneKind scene_kind>
-REALCAM_INLINE AreaLight area_light_at(const SceneView& scene, std::int32_t number, float time) {
-    if constexpr (scene_kind == SceneKind::any) return area_light_at(scene, scene.areas[number], time);
-    return scene.areas[number];
+REALCAM_INLINE AreaLight area_light_at(const SceneView& scene, std::int32_t index, float time) {
+    if constexpr (scene_kind == SceneKind::any) return area_light_at(scene, scene.areas[index], time);
+    return scene.areas[index];
 }
 
 /// Returns a point light, which may move, at a time of the exposure.
@@ -70,20 +74,20 @@ REALCAM_INLINE PointLight point_light_at(const SceneView& scene, const PointLigh
 struct DirectionToLight {
     Vec3f direction;  ///< unit
     float distance, reach;  ///< see LightSample
-    /// Between the light's normal and the direction to the position; positive if the light emits towards it.
+    /// Cosine between the light's normal and the direction to the position; positive if the light emits towards it.
     float cosine;
-    float pdf;  ///< per steradian, of a point sampled uniformly by area
+    float pdf;  ///< solid-angle density of a point sampled uniformly by area
 };
 
-/// `u`: barycentric coordinates of the point. Free of branches, so that loops vectorise. If the position lies on the
-/// light, the cosine is NaN.
+/// Returns direction and distance from a position to a point on a light. `u`: barycentric coordinates of the point.
+/// Free of branches, so that loops vectorise. If the position lies on the light, the cosine is NaN.
 REALCAM_INLINE DirectionToLight direction_to_light(const AreaLight& light, bool on_both_sides, Vec3f position,
                                                    Vec2f u) {
     const Vec3f to_light = light.corner + u.x * light.edge_u + u.y * light.edge_v - position;
     const float squared = dot(to_light, to_light), distance = std::sqrt(squared);
     const Vec3f direction = (1.0f / distance) * to_light;
-    const float on_side = -dot(direction, light.normal);
-    const float cosine = select(on_both_sides, std::fabs(on_side), on_side);
+    const float front_cosine = -dot(direction, light.normal);
+    const float cosine = select(on_both_sides, std::fabs(front_cosine), front_cosine);
     const float reach = 1.0f - (light.margin + kMarginShare * distance) / (cosine * distance);
     return {direction, distance, reach, cosine, area_light_pdf(light.area, squared, cosine)};
 }
@@ -107,30 +111,34 @@ REALCAM_INLINE bool is_near(const AreaLight& light, Vec3f position) {
 
 /// Point sampled uniformly by solid angle, in barycentric coordinates.
 struct SolidAngleSample {
-    Vec2f at;
+    Vec2f at;  ///< barycentric coordinates
     float solid_angle;  ///< solid angle of the whole light, in steradians
 };
 
-/// A function call on GPUs, because few receivers are near a light.
+/// Samples a triangle with corners a, b, c, seen from the origin, uniformly by solid angle. `double_area`: twice its
+/// area; `height`: distance of its plane from the origin. A function call on GPUs, because few receivers are near a
+/// light.
 REALCAM_ONE_COPY SolidAngleSample sample_spherical_triangle(Vec3f a, Vec3f b, Vec3f c, float double_area, float height,
                                                             Vec2f u) {
-    const SphericalTriangle seen(a, b, c, double_area, height);
-    return {seen.sample(u), seen.solid_angle};
+    const SphericalTriangle triangle(a, b, c, double_area, height);
+    return {triangle.sample(u), triangle.solid_angle};
 }
 
+/// Samples an area light uniformly by solid angle.
 REALCAM_INLINE SolidAngleSample sample_near(const AreaLight& light, Vec3f position, Vec2f u) {
     const Vec3f corner = light.corner - position;
     return sample_spherical_triangle(corner, corner + light.edge_u, corner + light.edge_v, 2.0f * light.area,
                                      std::fabs(dot(corner, light.normal)), u);
 }
 
-/// Density of sample_area_light, per steradian, at a point on the light.
+/// Density of sample_area_light, per steradian, at a point on the light. `distance`, `cosine`: see DirectionToLight.
 REALCAM_INLINE float solid_angle_pdf(const AreaLight& light, Vec3f position, float distance, float cosine) {
     return is_near(light, position) ? 1.0f / sample_near(light, position, {0, 0}).solid_angle
                                     : area_light_pdf(light.area, distance * distance, cosine);
 }
 
-/// Light sample of a point on an area light. Black if the position is behind the light.
+/// Light sample of a point on an area light, given by barycentric coordinates. Black if the receiver is behind the
+/// light.
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample light_from(const SceneView& scene, const AreaLight& light, const DirectionToLight& to_light,
                                       Vec2f point) {
@@ -139,6 +147,7 @@ REALCAM_INLINE LightSample light_from(const SceneView& scene, const AreaLight& l
             (1.0f / to_light.pdf) * emitted_radiance<scene_kind>(scene, light, point.x, point.y), to_light.pdf};
 }
 
+/// True if the light emits on both sides; in plain scenes none does.
 template <SceneKind scene_kind>
 REALCAM_INLINE bool shines_on_both_sides(const AreaLight& light) {
     return scene_kind != SceneKind::plain && light.is_two_sided != 0;
@@ -162,6 +171,7 @@ REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, const AreaL
     return light_from<scene_kind>(scene, light, to_light, sample.at);
 }
 
+/// Light sample of a point light for a receiver at a position. Black if they coincide.
 REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f position) {
     const Vec3f to_light = light.position - position;
     const float squared = dot(to_light, to_light), distance = std::sqrt(squared);
@@ -169,13 +179,13 @@ REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f pos
     const float inverse = 1.0f / distance,
                 reach = 1.0f - kMarginShare * (largest_coordinate(light.position) * inverse + 1.0f);
     const Vec3f direction = inverse * to_light;
-    const float fading = light.cos_offset - light.cos_scale * dot(light.axis, direction);
-    const float share = select(fading < 0.0f, 0.0f, select(fading < 1.0f, fading, 1.0f));
-    return {direction, distance, reach, (share * share / squared) * light.intensity, kDelta};
+    const float falloff = light.cos_offset - light.cos_scale * dot(light.axis, direction);
+    const float clamped = select(falloff < 0.0f, 0.0f, select(falloff < 1.0f, falloff, 1.0f));
+    return {direction, distance, reach, (clamped * clamped / squared) * light.intensity, kDelta};
 }
 
-/// Probability of choosing a kind of light: a uniform part plus a part proportional to its importance.
-struct LightShares {
+/// Probability of choosing a kind of light: `even`, which is the same for all kinds, plus `scale` times its importance.
+struct KindProbabilities {
     float even, scale;
 
     REALCAM_INLINE float probability(float importance) const {
@@ -183,21 +193,24 @@ struct LightShares {
     }
 };
 
-/// `count`: number of kinds of light, at least one; `sum`: of their importances.
-REALCAM_INLINE LightShares light_shares(float count, float sum) {
-    constexpr float kEven = 0.5f;
+/// Returns the probabilities that sum to 1. `count`: number of kinds of light, at least one; `sum`: sum of their
+/// importances.
+REALCAM_INLINE KindProbabilities kind_probabilities(float count, float sum) {
+    constexpr float kUniform = 0.5f;  // total probability of the uniform part
     // Falls back to the uniform distribution if the estimate is 0 or overflows.
     const bool is_useful = (sum > 0.0f) & (sum < 1e30f);
     // Never divides by 0, even if the result is discarded: a GPU takes a slow path of many instructions for that.
-    return {select(is_useful, kEven, 1.0f) / count,
-            select(is_useful, (1.0f - kEven) / select(is_useful, sum, 1.0f), 0.0f)};
+    return {select(is_useful, kUniform, 1.0f) / count,
+            select(is_useful, (1.0f - kUniform) / select(is_useful, sum, 1.0f), 0.0f)};
 }
 
-/// Importance of the environment: the illuminance on a plane that faces half of it.
+/// Importance of the environment: the illuminance, in lux, of a surface with half of its directions above it, at the
+/// mean luminance. 0 without an environment.
 REALCAM_INLINE float environment_importance(const SceneView& scene) {
     return scene.has_environment ? 3.141592654f * scene.environment.mean_luminance : 0.0f;
 }
 
+/// Importance of a sun: the unoccluded illuminance in lux. `normal`: of the receiver; zero: all directions.
 REALCAM_INLINE float sun_importance(const SunLight& sun, Vec3f normal) {
     const float cosine = select(dot(normal, normal) > 0.0f, -dot(normal, sun.direction), 1.0f);
     return select(cosine > 0.0f, cosine * luminance(sun.illuminance), 0.0f);
@@ -206,15 +219,15 @@ REALCAM_INLINE float sun_importance(const SunLight& sun, Vec3f normal) {
 /// Light samples at a surface: one of a chosen light, and one of the environment if it is sampled separately.
 inline constexpr int kLightSampleCount = 2;
 
-/// Estimated share of a receiver's light above which the environment gets a sample of its own.
-inline constexpr float kApartShare = 0.1f;
+/// Estimated fraction of a receiver's light from which on the environment gets a sample of its own.
+inline constexpr float kSeparateFraction = 0.1f;
 
 /// Probabilities of the kinds of light at a receiver. Half of the probability is proportional to the estimated
 /// unoccluded illuminance of each kind; the other half is uniform, because the brightest kind may be occluded.
 struct LightKinds {
-    LightShares shares;
+    KindProbabilities shares;  ///< from which the probabilities of the suns are computed
     float local_probability;  ///< all point and area lights together
-    float environment_probability;
+    float environment_probability;  ///< 0 if it is not one of the choices
     bool environment_is_apart;  ///< it has a sample of its own and is not one of the choices of the other sample
 
     /// Probability that one of the two light samples is taken from the environment.
@@ -222,39 +235,43 @@ struct LightKinds {
         return select(environment_is_apart, 1.0f, environment_probability);
     }
 
+    /// Probability of one sun. `normal`: of the receiver.
     REALCAM_INLINE float sun_probability(const SunLight& sun, Vec3f normal) const {
         return shares.probability(select(shares.scale > 0.0f, sun_importance(sun, normal), 0.0f));
     }
 };
 
+/// Number of kinds of light in the scene: point and area lights as one, each sun, and the environment.
 REALCAM_INLINE int count_light_kinds(const SceneView& scene) {
     return (scene.light_node_count > 0) + scene.sun_count + scene.has_environment;
 }
 
-/// `goes_on`: true if the path continues with a BSDF sample; `is_first`: true at the first surface of a path.
+/// Returns the strategy for the environment at a surface. `goes_on`: true if the path continues with a BSDF sample;
+/// `is_first`: true at the first surface of a path.
 REALCAM_INLINE SkySampling sky_sampling(const SceneView& scene, bool goes_on, bool is_first) {
     if (scene.light_node_count + scene.sun_count == 0) return SkySampling::chosen;
-    if (goes_on) return scene.environment.pixels ? SkySampling::chosen : SkySampling::left_to_rays;
+    // The BSDF sample reaches a constant environment with about the density of a light sample.
+    if (goes_on) return scene.environment.pixels ? SkySampling::chosen : SkySampling::bsdf_only;
     return is_first ? SkySampling::apart : SkySampling::chosen;
 }
 
-/// True if the scene has a light for the sample of this index, 0 or 1.
-REALCAM_INLINE bool has_light(const SceneView& scene, SkySampling sky, int number) {
-    if (number == 1) return sky == SkySampling::apart && scene.has_environment;
+/// True if the scene has a light for the light sample of this index, 0 or 1.
+REALCAM_INLINE bool has_light(const SceneView& scene, SkySampling sky, int sample_index) {
+    if (sample_index == 1) return sky == SkySampling::apart && scene.has_environment;
     return scene.light_node_count + scene.sun_count > 0 || scene.has_environment;
 }
 
-/// `local`, `suns`: importances of all point and area lights, and of all suns; 0 if there is only one kind. Free of
-/// branches, so that loops over receivers vectorise.
+/// Returns the probabilities of the kinds of light. `local`, `suns`: importances of all point and area lights, and of
+/// all suns; 0 if there is only one kind. Free of branches, so that loops over receivers vectorise.
 REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, SkySampling sampling, float local, float suns) {
     const int count = count_light_kinds(scene);
     const float sky = count > 1 ? environment_importance(scene) : 0.0f, others = local + suns;
-    const bool is_apart =
-                   (sampling == SkySampling::apart) & scene.has_environment & (sky >= kApartShare * (sky + others)),
-               is_chosen = scene.has_environment & !is_apart & (sampling != SkySampling::left_to_rays);
+    const bool is_apart = (sampling == SkySampling::apart) & scene.has_environment &
+                          (sky >= kSeparateFraction * (sky + others)),
+               is_chosen = scene.has_environment & !is_apart & (sampling != SkySampling::bsdf_only);
     const bool is_left_out = scene.has_environment & !is_chosen;
-    const LightShares shares = light_shares(static_cast<float>(count) - select(is_left_out, 1.0f, 0.0f),
-                                            select(is_chosen, others + sky, others));
+    const KindProbabilities shares = kind_probabilities(static_cast<float>(count) - select(is_left_out, 1.0f, 0.0f),
+                                                        select(is_chosen, others + sky, others));
     return {shares, scene.light_node_count > 0 ? shares.probability(local) : 0.0f,
             select(is_chosen, shares.probability(sky), 0.0f), is_apart};
 }
@@ -264,17 +281,19 @@ struct LightImportances {
     float local = 0.0f, suns = 0.0f;
 };
 
+/// Importances at a receiver.
 REALCAM_ONE_COPY LightImportances light_importances(const SceneView& scene, LightReceiver receiver) {
-    LightImportances of;
-    if (scene.light_node_count > 0) of.local = most_illuminance(scene.light_nodes[0], receiver);
-    for (int i = 0; i < scene.sun_count; ++i) of.suns += sun_importance(scene.suns[i], receiver.normal);
-    return of;
+    LightImportances importances;
+    if (scene.light_node_count > 0) importances.local = most_illuminance(scene.light_nodes[0], receiver);
+    for (int i = 0; i < scene.sun_count; ++i) importances.suns += sun_importance(scene.suns[i], receiver.normal);
+    return importances;
 }
 
+/// Returns the probabilities of the kinds of light at a receiver.
 REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, SkySampling sampling, LightReceiver receiver) {
-    LightImportances of;
-    if (count_light_kinds(scene) > 1) of = light_importances(scene, receiver);
-    return light_kinds(scene, sampling, of.local, of.suns);
+    LightImportances importances;
+    if (count_light_kinds(scene) > 1) importances = light_importances(scene, receiver);
+    return light_kinds(scene, sampling, importances.local, importances.suns);
 }
 
 /// Solid-angle density of sample_light in a direction in which the environment is visible. At most one of the two
@@ -286,7 +305,7 @@ REALCAM_INLINE float environment_light_pdf(const SceneView& scene, SkySampling s
 }
 
 /// Solid-angle density of sample_light in a direction in which an area light is hit, at this distance and with this
-/// cosine at the light.
+/// cosine at the light. `area_light`: index of the light.
 template <SceneKind scene_kind>
 REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
                                        std::int32_t area_light, float distance, float cosine) {
@@ -297,6 +316,7 @@ REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, SkySampling sampl
 }
 
 /// Index of the area light of a hit on an emitting triangle.
+/// The triangle must be one of its mesh's emitters, which are sorted.
 REALCAM_INLINE std::int32_t area_light_of(const SceneView& scene, Hit hit) {
     const bool is_static = hit.instance == kNoInstance;
     const MeshView& mesh = mesh_of(scene, hit.instance);
@@ -314,17 +334,17 @@ enum class LightKind : std::int32_t { point, area, environment, sun };
 struct LightPick {
     LightKind kind;
     std::int32_t index;  ///< among the lights of its kind
-    float probability;
+    float probability;  ///< with which it was chosen; 0: no light was chosen
     Vec2f u;  ///< random numbers for sampling it
 };
 
 /// Chooses one light. A single pair of random numbers chooses the light and the point on it, so that stratification
-/// over a pixel's samples carries over to each light. `number`: index of the light sample. `choose(u)`: chooses one of
-/// the point and area lights, like choose_light.
+/// over a pixel's samples carries over to each light. `sample_index`: 0 or 1 (kLightSampleCount). `choose(u)`: chooses
+/// one of the point and area lights and returns a LightChoice, like choose_light.
 template <class Choose>
 REALCAM_INLINE LightPick pick_light_by(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds,
-                                       int number, Vec2f u, const Choose& choose) {
-    if (number == 1) return {LightKind::environment, 0, kinds.environment_is_apart ? 1.0f : 0.0f, u};
+                                       int sample_index, Vec2f u, const Choose& choose) {
+    if (sample_index == 1) return {LightKind::environment, 0, kinds.environment_is_apart ? 1.0f : 0.0f, u};
     float probability = kinds.local_probability;
     if (u.x < probability) {
         const LightChoice chosen = choose(left_over(u.x, probability));
@@ -346,15 +366,16 @@ REALCAM_INLINE LightPick pick_light_by(const SceneView& scene, LightReceiver rec
     return {LightKind::environment, 0, 0.0f, u};
 }
 
-/// `seed`: see choose_light.
-REALCAM_INLINE LightPick pick_light(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds, int number,
-                                    Vec2f u, std::uint32_t seed) {
-    return pick_light_by(scene, receiver, kinds, number, u,
-                         [&](float rest) { return choose_light(scene, receiver, rest, seed); });
+/// Chooses one light, point and area lights by choose_light. `sample_index`: see pick_light_by; `seed`: see
+/// choose_light.
+REALCAM_INLINE LightPick pick_light(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds,
+                                    int sample_index, Vec2f u, std::uint32_t seed) {
+    return pick_light_by(scene, receiver, kinds, sample_index, u,
+                         [&](float tree_u) { return choose_light(scene, receiver, tree_u, seed); });
 }
 
-/// 1 / distance^2 is unbounded, and intensities reach 1e30 cd. With this bound a narrow lobe's value and the film's
-/// sums stay finite.
+/// Clamps each channel to 1e28. 1 / distance^2 is unbounded, and intensities reach 1e30 cd. With this bound a narrow
+/// lobe's value and the film's sums stay finite.
 REALCAM_INLINE Color bounded_light(Color c) {
     const auto bounded = [](float v) { return select(v < 1e28f, v, 1e28f); };
     return {bounded(c.r), bounded(c.g), bounded(c.b)};
@@ -383,8 +404,8 @@ REALCAM_INLINE LightSample sample_picked(const SceneView& scene, LightReceiver r
 /// light was chosen.
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample sample_light(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
-                                        int number, Vec2f u, std::uint32_t seed) {
-    const LightPick pick = pick_light(scene, receiver, light_kinds(scene, sampling, receiver), number, u, seed);
+                                        int sample_index, Vec2f u, std::uint32_t seed) {
+    const LightPick pick = pick_light(scene, receiver, light_kinds(scene, sampling, receiver), sample_index, u, seed);
     if (!(pick.probability > 0.0f)) return {{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
     LightSample sample = sample_picked<scene_kind>(scene, receiver, pick);
     sample.irradiance = bounded_light((1.0f / pick.probability) * sample.irradiance);

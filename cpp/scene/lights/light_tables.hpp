@@ -14,23 +14,25 @@ namespace REALCAM_NAMESPACE {
 /// samples miss keeps a non-zero probability: 0 only if the map is black.
 std::vector<float> emission_means(const MeshView& mesh, Checkpoint& checkpoint);
 
-// Sampling probabilities of an environment map's pixels: mostly in proportion to power, blended with a uniform share,
-// because a light that is 1e8 times dimmer than another is all the light that reaches points where the brighter one is
-// occluded.
+// Sampling probabilities of an environment map's pixels: mostly in proportion to power, blended with a uniform
+// distribution, because a light that is 1e8 times dimmer than another is all the light that reaches points where the
+// brighter one is occluded.
 
-inline constexpr double kEvenShare = 0.125;  ///< its cost: 1/7 more variance if sampling by power is optimal
+/// Weight of the uniform distribution in the mixture. It costs 1/7 more variance if sampling by power is optimal.
+inline constexpr double kUniformWeight = 0.125;
 
-/// Defensive mixture: (1 - kEvenShare) of the normalised `weights` plus kEvenShare of the normalised `even_weights`,
-/// which must be 0 where `weights` are 0. Returns `weights` if all are 0.
-std::vector<double> mixed(std::vector<double> weights, const std::vector<double>& even_weights);
+/// Defensive mixture: (1 - kUniformWeight) of the normalised `weights` plus kUniformWeight of the normalised
+/// `uniform_weights`, which must be 0 for elements with a weight of 0. Returns `weights` if all are 0.
+std::vector<double> defensive_mixture(std::vector<double> weights, const std::vector<double>& uniform_weights);
 
+/// Arrays of an EnvironmentView.
 struct EnvironmentTables {
-    std::vector<float> marginal_cdf, conditional_cdf;  ///< empty for a constant environment
-    float mean_luminance = 0;                          ///< over all directions
+    std::vector<float> marginal_cdf, conditional_cdf;  ///< see EnvironmentView; empty for a constant environment
+    float mean_luminance = 0;                          ///< cd/m^2, over all directions
 };
 
-/// Tables for sampling an environment map: pixels by power and, for the uniform share, by solid angle if they are not
-/// black.
+/// Returns the tables for sampling an environment map: pixels by power and, for the uniform part, by solid angle if
+/// they are not black. Throws Cancelled if `checkpoint` does.
 EnvironmentTables environment_tables(const Environment& e, Checkpoint& checkpoint);
 
 }  // namespace REALCAM_NAMESPACE

@@ -1,6 +1,11 @@
 #pragma once
-// Written by tools/make_ggx_tables.py, which says what the numbers are. Macros, because host and
-// device each need an array of their own (ggx_albedo.hpp).
+// Directional albedo of single scattering by GGX microfacets, as read by ggx_albedo.hpp and written by
+// tools/make_ggx_tables.py. Rows: the square root of alpha, from that of 0.001 to 1. ALBEDO: albedo for a
+// Fresnel term of 1; columns: the cosine on the surface stretched to alpha 1, to the power 2/3. SCHLICK:
+// albedo for the Fresnel term (1 - cosine)^5, relative to ALBEDO; columns: the square root of the cosine.
+// MEAN_LOSS: 1 - cosine-weighted mean of the albedo, divided by alpha^2. MEAN_SCHLICK: cosine-weighted
+// mean for the Fresnel term. The tables are macros, because host and device each need an array of their
+// own.
 // clang-format off
 
 #define REALCAM_GGX_ROWS 32

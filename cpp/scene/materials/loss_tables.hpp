@@ -1,19 +1,24 @@
 #pragma once
-// Written by tools/make_loss_tables.py, which says what the numbers are. Macros, because host and
-// device each need an array of their own (dielectric_border.hpp, bsdf.hpp).
+// Energy that single scattering loses, as read by dielectric_interface.hpp and bsdf.hpp and written by
+// tools/make_loss_tables.py. INTERFACE_LOSS: at a rough dielectric interface, first outside, then inside,
+// relative to a function of roughness and cosine; layers: the cosine of the critical angle, rows: the
+// square root of alpha, columns: the square root of the cosine. INTERFACE_MEAN_LOSS: its cosine-weighted
+// mean, divided by alpha^2. COAT_LOSS: of a perfectly reflecting rough metal under a coat; layers: the
+// square root of the coat's alpha, rows: of the metal's, columns: of the cosine. COAT_MEAN_LOSS: its
+// cosine-weighted mean. The tables are macros, because host and device each need an array of their own.
 // clang-format off
 
-#define REALCAM_BORDER_LAYERS 16
-#define REALCAM_BORDER_ROWS 16
-#define REALCAM_BORDER_COLUMNS 24
-#define REALCAM_BORDER_MEAN_ROWS 31
+#define REALCAM_INTERFACE_LAYERS 16
+#define REALCAM_INTERFACE_ROWS 16
+#define REALCAM_INTERFACE_COLUMNS 24
+#define REALCAM_INTERFACE_MEAN_ROWS 31
 #define REALCAM_COAT_LAYERS 8
 #define REALCAM_COAT_ROWS 14
 #define REALCAM_COAT_COLUMNS 24
-#define REALCAM_BORDER_LEAST_CRITICAL 0.3f
-#define REALCAM_BORDER_MOST_CRITICAL 0.9428090f
+#define REALCAM_INTERFACE_LEAST_CRITICAL 0.3f
+#define REALCAM_INTERFACE_MOST_CRITICAL 0.9428090f
 
-#define REALCAM_BORDER_LOSS \
+#define REALCAM_INTERFACE_LOSS \
     0.973589f, 0.987631f, 0.942695f, 0.769822f, 0.583802f, 0.332143f, 0.103445f, 0.020334f, \
     0.000000f, 0.010717f, 0.000010f, 0.006238f, 0.000332f, 0.000000f, 0.000000f, 0.000000f, \
     0.000000f, 0.000000f, 0.000000f, 0.000000f, 0.000196f, 0.000208f, 0.000085f, 0.000000f, \
@@ -1551,7 +1556,7 @@
     0.396407f, 0.416547f, 0.433677f, 0.448658f, 0.462235f, 0.475740f, 0.492279f, 0.509871f, \
     0.523336f, 0.535973f, 0.546836f, 0.556597f, 0.564858f, 0.571908f, 0.578187f, 0.583780f
 
-#define REALCAM_BORDER_MEAN_LOSS \
+#define REALCAM_INTERFACE_MEAN_LOSS \
     4.517303f, 3.126196f, 2.336563f, 1.808395f, 1.456273f, 1.183742f, 1.001873f, 0.868972f, \
     0.766639f, 0.695907f, 0.636667f, 0.592954f, 0.552967f, 0.518930f, 0.487985f, 0.457981f, \
     0.431355f, 0.403830f, 0.379731f, 0.354649f, 0.332664f, 0.310164f, 0.290270f, 0.270337f, \

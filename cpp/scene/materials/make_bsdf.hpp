@@ -5,15 +5,18 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Conversion of a surface point's material parameters to a BSDF, and its albedo for denoising.
+
 namespace make_bsdf_detail {
 
-/// Tilts a shading normal under which the eye would be below the surface towards the eye, until it is not.
+/// Tilts the shading normal towards the eye if the eye would otherwise be below the shading plane.
 REALCAM_INLINE Vec3f visible_normal(Vec3f normal, Vec3f to_eye) {
-    constexpr float kLeastCosine = 1e-3f;
+    constexpr float kMinCosine = 1e-3f;
     const float cosine = dot(normal, to_eye);
-    return cosine >= kLeastCosine ? normal : normalized(normal + (kLeastCosine - cosine) * to_eye);
+    return cosine >= kMinCosine ? normal : normalized(normal + (kMinCosine - cosine) * to_eye);
 }
 
+/// Clamps to 0..1.
 REALCAM_INLINE float unit_range(float v) {
     return v > 0.0f ? (v < 1.0f ? v : 1.0f) : 0.0f;
 }
@@ -33,20 +36,23 @@ REALCAM_INLINE float normal_reflectance(float ior) {
     return root * root;
 }
 
-REALCAM_INLINE DielectricBorder border_of(const SurfacePoint& point, float weight, Color filter, float alpha,
-                                          float eye_cosine) {
+/// Returns the interface of a transmitting material. `weight`, `filter`, `alpha`: see DielectricInterface;
+/// `eye_cosine`: between the normal and the direction to the eye.
+REALCAM_INLINE DielectricInterface make_interface(const SurfacePoint& point, float weight, Color filter, float alpha,
+                                                  float eye_cosine) {
     const Material& m = *point.material;
-    DielectricBorder border;
-    border.weight = weight;
-    border.filter = filter;
-    border.is_thin = m.is_thin != 0;
-    const float ior = m.ior > 1e-3f ? m.ior : 1e-3f;
-    border.eta = border.is_thin || point.is_front ? ior : 1.0f / ior;
-    border.alpha = alpha;
-    border.prepare(eye_cosine);
-    return border;
+    DielectricInterface interface;
+    interface.weight = weight;
+    interface.filter = filter;
+    interface.is_thin = m.is_thin != 0;
+    const float ior = m.ior > 1e-3f ? m.ior : 1e-3f;  // files may hold an index of 0
+    interface.eta = interface.is_thin || point.is_front ? ior : 1.0f / ior;
+    interface.alpha = alpha;
+    interface.prepare(eye_cosine);
+    return interface;
 }
 
+/// Sets the lobes of a phong material.
 REALCAM_INLINE void add_phong(Bsdf& bsdf, const SurfacePoint& point) {
     const Material& m = *point.material;
     const float opaque = 1.0f - point.transmission;
@@ -54,8 +60,8 @@ REALCAM_INLINE void add_phong(Bsdf& bsdf, const SurfacePoint& point) {
     bsdf.phong = opaque * point.specular;
     bsdf.shininess = point.shininess;
     if (point.transmission > 0.0f) {
-        bsdf.border = border_of(point, point.transmission, m.filter, 0.0f, bsdf.eye.z);
-        if (m.fresnel == FresnelTerm::none) bsdf.border.fixed_reflectance = unit_range(largest(m.mirror));
+        bsdf.interface = make_interface(point, point.transmission, m.filter, 0.0f, bsdf.eye.z);
+        if (m.fresnel == FresnelTerm::none) bsdf.interface.fixed_reflectance = unit_range(largest(m.mirror));
     } else if (!is_black(m.mirror)) {
         if (m.fresnel == FresnelTerm::none) {
             bsdf.mirror = m.mirror;
@@ -64,43 +70,49 @@ REALCAM_INLINE void add_phong(Bsdf& bsdf, const SurfacePoint& point) {
             // compensate for the mirror's reflectance.
             const Color f0 = unit_range(m.mirror);
             bsdf.specular = MicrofacetReflection(0.0f, bsdf.eye.z);
-            bsdf.specular.reflectance = bsdf.above_diffuse = FacetReflectance::between(f0, 1.0f, 0.0f);
-            const auto under = [](float d, float mirror) { return d > 0.0f ? unit_range(d / (1.0f - mirror)) : 0.0f; };
-            bsdf.diffuse = {under(point.diffuse.r, f0.r), under(point.diffuse.g, f0.g), under(point.diffuse.b, f0.b)};
+            bsdf.specular.reflectance = bsdf.above_diffuse = FacetReflectance::from_f0_f90(f0, 1.0f, 0.0f);
+            const auto below_mirror = [](float d, float mirror) {
+                return d > 0.0f ? unit_range(d / (1.0f - mirror)) : 0.0f;
+            };
+            bsdf.diffuse = {below_mirror(point.diffuse.r, f0.r), below_mirror(point.diffuse.g, f0.g),
+                            below_mirror(point.diffuse.b, f0.b)};
         }
     }
 }
 
-// glTF 2.0, appendix B, with its extensions. The dielectric and the metal share one specular lobe, because Schlick's
-// term is linear in its two reflectances.
+/// Sets the lobes of a metallic_roughness material: glTF 2.0, appendix B, with its extensions. The dielectric and the
+/// metal share one specular lobe, because Schlick's term is linear in its two reflectances.
 REALCAM_INLINE void add_metallic_roughness(Bsdf& bsdf, const SurfacePoint& point, Vec3f to_eye) {
     const Material& m = *point.material;
     const Color base = unit_range(point.diffuse);
     const float metallic = unit_range(point.metallic), alpha = alpha_of(point.roughness);
-    const float passing = (1.0f - metallic) * point.transmission, opaque = 1.0f - passing;
-    if (passing > 0.0f) bsdf.border = border_of(point, passing, base, alpha, bsdf.eye.z);
+    // Weights of the transmitting dielectric, and of the metal and the opaque dielectric together.
+    const float transmitting = (1.0f - metallic) * point.transmission, opaque = 1.0f - transmitting;
+    if (transmitting > 0.0f) bsdf.interface = make_interface(point, transmitting, base, alpha, bsdf.eye.z);
     if (opaque > 0.0f) {
-        const float metal = metallic / opaque;
+        const float metal = metallic / opaque;  // weight of the metal within the opaque part
         bsdf.specular = MicrofacetReflection(alpha, bsdf.eye.z);
-        const float lost = bsdf.specular.lost;
+        const float energy_loss = bsdf.specular.energy_loss;
         const Color f0 = unit_range((point.specular_weight * normal_reflectance(m.ior)) * point.specular);
-        const auto dielectric = FacetReflectance::between(f0, point.specular_weight, lost);
-        bsdf.specular.reflectance = mix(dielectric, FacetReflectance::between(base, 1.0f, lost), metal);
+        const auto dielectric = FacetReflectance::from_f0_f90(f0, point.specular_weight, energy_loss);
+        bsdf.specular.reflectance = mix(dielectric, FacetReflectance::from_f0_f90(base, 1.0f, energy_loss), metal);
         bsdf.specular_weight = opaque;
         bsdf.above_diffuse = dielectric;
         bsdf.diffuse = (opaque * (1.0f - metal)) * base;
     }
     if (point.clearcoat > 0.0f) {
         bsdf.coat_weight = unit_range(point.clearcoat);
-        bsdf.coat_turn = HalfTurn(bsdf.frame.to_local(visible_normal(point.coat_normal, to_eye)));
-        bsdf.coat = MicrofacetReflection(alpha_of(point.clearcoat_roughness), bsdf.coat_turn(bsdf.eye).z);
-        bsdf.coat.reflectance = FacetReflectance::between(grey(0.04f), 1.0f, bsdf.coat.lost);
+        bsdf.coat_rotation = HalfRotation(bsdf.frame.to_local(visible_normal(point.coat_normal, to_eye)));
+        bsdf.coat = MicrofacetReflection(alpha_of(point.clearcoat_roughness), bsdf.coat_rotation(bsdf.eye).z);
+        constexpr float kCoatF0 = 0.04f;  // of a refractive index of 1.5 (KHR_materials_clearcoat)
+        bsdf.coat.reflectance = FacetReflectance::from_f0_f90(grey(kCoatF0), 1.0f, bsdf.coat.energy_loss);
     }
 }
 
 }  // namespace make_bsdf_detail
 
-/// BSDF of a point for a direction of view. For SceneKind::plain all materials must be plain (Material::is_plain).
+/// Returns the BSDF of a point for a direction of view, `to_eye` (unit): a PlainBsdf for SceneKind::plain, for which
+/// all materials must be plain (Material::is_plain), and a Bsdf otherwise.
 template <SceneKind scene_kind>
 REALCAM_INLINE auto make_bsdf(const SurfacePoint& point, Vec3f to_eye) {
     using namespace make_bsdf_detail;

@@ -30,7 +30,7 @@ MeshView RenderSpaceMesh::view() const {
     view.triangles = triangles().data();
     view.planes = planes_.data();
     view.positions = positions_.data();
-    const std::vector<Vec3f>& normals = turned_normals_.empty() ? split_.normals() : turned_normals_;
+    const std::vector<Vec3f>& normals = transformed_normals_.empty() ? split_.normals() : transformed_normals_;
     view.normals = normals.empty() ? nullptr : normals.data();
     view.uvs = split_.uvs().empty() ? nullptr : split_.uvs().data();
     view.second_uvs = split_.second_uvs().empty() ? nullptr : split_.second_uvs().data();
@@ -51,11 +51,11 @@ void RenderSpaceMesh::add_texture_levels(Checkpoint& checkpoint) {
     for (const Material& material : scene_.materials) {
         for (const auto member :
              {&Material::diffuse_texture, &Material::specular_texture, &Material::emission_texture}) {
-            const std::int32_t number = (material.*member).texture;
-            if (number < 0) continue;
-            TextureView& texture = textures_[static_cast<std::size_t>(number)];
+            const std::int32_t index = (material.*member).texture;
+            if (index < 0) continue;
+            TextureView& texture = textures_[static_cast<std::size_t>(index)];
             if (texture.coarse_levels == 0)
-                levels_[static_cast<std::size_t>(number)] = coarser_levels(texture, checkpoint);
+                levels_[static_cast<std::size_t>(index)] = coarser_levels(texture, checkpoint);
         }
     }
 }
@@ -69,10 +69,10 @@ void RenderSpaceMesh::add_normals(Checkpoint& checkpoint) {
     if (frame_.is_scale_and_shift() || split_.normals().empty()) return;
     // Left unnormalised, so that interpolation between vertices is the transform of the original one.
     const InverseAffine<double> inverse = frame_.inverse();
-    turned_normals_.reserve(split_.normals().size());
+    transformed_normals_.reserve(split_.normals().size());
     for (const Vec3f n : split_.normals()) {
         checkpoint.pass();
-        turned_normals_.push_back(static_cast<Vec3f>(inverse.normal_of(static_cast<Vec3d>(n))));
+        transformed_normals_.push_back(static_cast<Vec3f>(inverse.normal_of(static_cast<Vec3d>(n))));
     }
 }
 
@@ -82,17 +82,18 @@ void RenderSpaceMesh::add_planes(Checkpoint& checkpoint) {
     for (std::size_t i = 0; i < triangles().size(); ++i) {
         checkpoint.pass();
         // Uses the edges of the original triangle, so that all its pieces have the same plane.
-        const Edges whole = edges_of(scene_.triangles[split_.parent(i)],
-                                     [&](std::uint32_t v) { return frame_.point(scene_.positions_m[v]); });
-        const Vec3d area = cross(whole.u, whole.v);
-        const double size = length(area);
-        const Vec3d normal = size > 0 ? (side / size) * area : Vec3d{0, 0, 1};
-        float reach = 0;
+        const Edges original = edges_of(scene_.triangles[split_.parent(i)],
+                                        [&](std::uint32_t v) { return frame_.point(scene_.positions_m[v]); });
+        const Vec3d cross_product = cross(original.u, original.v);
+        const double size = length(cross_product);
+        const Vec3d normal = size > 0 ? (side / size) * cross_product : Vec3d{0, 0, 1};
+        float max_coordinate = 0;
         for (const std::uint32_t v : triangles()[i].vertices)
-            reach = std::max(reach, largest_coordinate(positions_[v]));
-        const double margin = static_cast<double>(kMarginShare) * static_cast<double>(reach) + 1e-12;
+            max_coordinate = std::max(max_coordinate, largest_coordinate(positions_[v]));
+        constexpr double kMinMargin = 1e-12;  // above 0 also for a triangle at the origin
+        const double margin = static_cast<double>(kMarginShare) * static_cast<double>(max_coordinate) + kMinMargin;
         planes_.push_back(
-            {static_cast<Vec3f>(normal), static_cast<float>(dot(normal, whole.corner)), static_cast<float>(margin)});
+            {static_cast<Vec3f>(normal), static_cast<float>(dot(normal, original.corner)), static_cast<float>(margin)});
     }
 }
 

@@ -31,9 +31,11 @@ RenderSpaceScene::RenderSpaceScene(Assembly assembly, Vec3d origin_m, TimeInterv
             add_object(object, relative_to(origin_) * instance.scene_from_object, LargeTriangles::cut);
             object_of_.push_back(next);
         } else {
-            const int about = static_cast<int>(std::floor(doublings(instance.scene_from_object) / kAlike));
-            const auto [found, is_new] = shared.try_emplace({&object, about}, next);
-            if (is_new) add_object(object, own_frame(boxes_.back(), instance.scene_from_object), LargeTriangles::keep);
+            const int scale_class =
+                static_cast<int>(std::floor(log2_scale(instance.scene_from_object) / kMaxScaleDifference));
+            const auto [found, is_new] = shared.try_emplace({&object, scale_class}, next);
+            if (is_new)
+                add_object(object, object_frame(boxes_.back(), instance.scene_from_object), LargeTriangles::keep);
             object_of_.push_back(found->second);
         }
     }
@@ -50,10 +52,10 @@ RenderSpaceScene::RenderSpaceScene(Assembly assembly, Vec3d origin_m, TimeInterv
 bool RenderSpaceScene::can_move_to(const Assembly& assembly) const {
     if (!same_parts(assembly_, assembly)) return false;
     for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
-        if (same_placement(assembly_.instances[i], assembly.instances[i])) continue;
-        const Affine<double>& then = assembly.instances[i].scene_from_object;
-        if (is_static(i) || is_large_and_near(boxes_[i], then) ||
-            std::fabs(doublings(objects_[object_of_[i]]->frame()) - doublings(then)) > kAlike)
+        if (same_transform(assembly_.instances[i], assembly.instances[i])) continue;
+        const Affine<double>& new_transform = assembly.instances[i].scene_from_object;
+        if (is_static(i) || is_large_and_near(boxes_[i], new_transform) ||
+            std::fabs(log2_scale(objects_[object_of_[i]]->frame()) - log2_scale(new_transform)) > kMaxScaleDifference)
             return false;
     }
     return true;
@@ -95,7 +97,7 @@ InstancesView RenderSpaceScene::instances_view() const {
     view.light_nodes = has_lights ? light_tree_.nodes().data() : nullptr;
     view.leaf_lights = has_lights ? light_tree_.leaf_lights().data() : nullptr;
     view.light_trails = has_lights ? light_tree_.trails().data() : nullptr;
-    view.light_shares = has_lights ? light_tree_.shares().data() : nullptr;
+    view.leaf_probabilities = has_lights ? light_tree_.leaf_probabilities().data() : nullptr;
     view.light_node_count = static_cast<std::int32_t>(light_tree_.nodes().size());
     view.leaf_light_count = static_cast<std::int32_t>(light_tree_.leaf_lights().size());
     view.instance_count = static_cast<std::int32_t>(instances_.size());
@@ -108,13 +110,13 @@ InstancesView RenderSpaceScene::instances_view() const {
 bool RenderSpaceScene::is_large_and_near(const BoundingBox& box, const Affine<double>& map) const {
     if (box.empty()) return false;
     const double size = length(map.direction(box.high - box.low));
-    const Vec3d near = map.point(box.nearest(map.inverse().point(origin_)));
-    return size > kLarge_m && length(near - origin_) < kNearShare * size;
+    const Vec3d nearest = map.point(box.nearest(map.inverse().point(origin_)));
+    return size > kLarge_m && length(nearest - origin_) < kNearRatio * size;
 }
 
-Affine<double> RenderSpaceScene::own_frame(const BoundingBox& box, const Affine<double>& map) {
+Affine<double> RenderSpaceScene::object_frame(const BoundingBox& box, const Affine<double>& map) {
     Affine<double> frame;
-    const double scale = std::exp2(doublings(map));
+    const double scale = std::exp2(log2_scale(map));
     frame.x.x = frame.y.y = frame.z.z = scale;
     if (!box.empty()) frame.origin = -scale * box.middle();
     return frame;
@@ -177,18 +179,18 @@ std::vector<Affine<double>> RenderSpaceScene::exposure_keys(std::size_t i) const
     for (int corner = 0; corner < 8; ++corner) corners.push_back(box.empty() ? Vec3d{0, 0, 0} : box.corner(corner));
     const std::optional<int> steps = key_steps(motion, exposure_, corners);
     if (!steps)
-        throw InputError(label(assembly_, i) + ": turns too fast; in one exposure about 20 turns can be followed");
+        throw InputError(label(assembly_, i) + ": turns too fast; at most about 20 rotations fit into one exposure");
     return *steps == 0 ? std::vector{motion.at(exposure_.begin_s)} : uniform_keys(motion, exposure_, *steps);
 }
 
 void RenderSpaceScene::widen_margins(InstanceView& view, const Affine<double>& key, std::size_t i) const {
     const double span = length(key.x) * length(key.y) * length(key.z);
-    const auto loss = static_cast<float>(1 + span / std::fabs(key.determinant()));
-    const InstanceView there = instance_view(key, i);
-    const Vec3f margin = loss * there.margin;
+    const auto inversion_error = static_cast<float>(1 + span / std::fabs(key.determinant()));
+    const InstanceView at_key = instance_view(key, i);
+    const Vec3f margin = inversion_error * at_key.margin;
     view.margin = {std::max(view.margin.x, margin.x), std::max(view.margin.y, margin.y),
                    std::max(view.margin.z, margin.z)};
-    view.reach_margin = std::max(view.reach_margin, there.reach_margin);
+    view.max_object_margin = std::max(view.max_object_margin, at_key.max_object_margin);
 }
 
 void RenderSpaceScene::add_leaves(std::size_t first_point, std::size_t first_area, std::vector<LightLeaf>& points,
@@ -203,12 +205,12 @@ void RenderSpaceScene::add_leaves(std::size_t first_point, std::size_t first_are
     for (std::int32_t key = 0; key < keys; ++key) {
         const float time = static_cast<float>(key) / static_cast<float>(keys - 1);
         for (std::size_t k = first_point; k < points_.size(); ++k) {
-            const LightLeaf there = LightTree::leaf(point_light_at(scene, points_[k], time));
+            const LightLeaf at_key = LightTree::leaf(point_light_at(scene, points_[k], time));
             LightLeaf& leaf = points[points_before + k - first_point];
             if (key == 0)
-                leaf = there;
+                leaf = at_key;
             else
-                LightTree::widen(leaf, there);
+                LightTree::widen(leaf, at_key);
         }
         for (std::size_t k = first_area; k < areas_.size(); ++k)
             LightTree::widen(areas[areas_before + k - first_area],
@@ -216,57 +218,65 @@ void RenderSpaceScene::add_leaves(std::size_t first_point, std::size_t first_are
     }
 }
 
-InstanceView RenderSpaceScene::instance_view(const Affine<double>& exact, std::size_t i) const {
-    const auto map = static_cast<Affine<float>>(exact);
+InstanceView RenderSpaceScene::instance_view(const Affine<double>& transform, std::size_t i) const {
+    const auto map = static_cast<Affine<float>>(transform);
     const InverseAffine<double> inverse = static_cast<Affine<double>>(map).inverse();
-    const auto sum = [](double a, double b, double c) {
+    // Error of one object coordinate for render-space coordinates of 1, from a column of the inverse.
+    const auto margin_of = [](double a, double b, double c) {
         return static_cast<float>(static_cast<double>(kMarginShare) * (std::fabs(a) + std::fabs(b) + std::fabs(c)));
     };
-    const Vec3f margin = {sum(inverse.x.x, inverse.y.x, inverse.z.x), sum(inverse.x.y, inverse.y.y, inverse.z.y),
-                          sum(inverse.x.z, inverse.y.z, inverse.z.z)};
-    float reach = std::numeric_limits<float>::max();
+    const Vec3f margin = {margin_of(inverse.x.x, inverse.y.x, inverse.z.x),
+                          margin_of(inverse.x.y, inverse.y.y, inverse.z.y),
+                          margin_of(inverse.x.z, inverse.y.z, inverse.z.z)};
+    // No coordinate of the object, in a frame centred on its box, exceeds the size of the box.
+    float max_object_margin = std::numeric_limits<float>::max();
     if (!is_static(i) && !boxes_[i].empty())
-        reach =
-            kMarginShare *
-            static_cast<float>(length(exact.direction(objects_[object_of_[i]]->frame().direction(boxes_[i].size()))));
-    return {map,           static_cast<InverseAffine<float>>(inverse), margin, reach,
-            object_of_[i], static_cast<std::int32_t>(areas_.size()),   0,      0};
+        max_object_margin = kMarginShare * static_cast<float>(length(transform.direction(
+                                               objects_[object_of_[i]]->frame().direction(boxes_[i].size()))));
+    return {map,
+            static_cast<InverseAffine<float>>(inverse),
+            margin,
+            max_object_margin,
+            object_of_[i],
+            /*first_area=*/static_cast<std::int32_t>(areas_.size()),
+            /*first_key=*/0,
+            /*key_count=*/0};
 }
 
 void RenderSpaceScene::find_kind() {
-    const auto add = [&](const Scene& scene) {
+    const auto include = [&](const Scene& scene) {
         if (!scene.colors.empty()) kind_ = std::max(kind_, SceneKind::opaque);
         for (const Material& m : scene.materials)
             kind_ = std::max(kind_, m.has_holes()  ? SceneKind::any
                                     : m.is_plain() ? SceneKind::plain
                                                    : SceneKind::opaque);
     };
-    add(*assembly_.static_geometry);
-    for (const Instance& instance : assembly_.instances) add(*instance.object);
+    include(*assembly_.static_geometry);
+    for (const Instance& instance : assembly_.instances) include(*instance.object);
 }
 
-PointLight RenderSpaceScene::point_light(const ScenePointLight& from, Vec3d position, Vec3d axis) {
-    PointLight light{static_cast<Vec3f>(position), from.intensity};
-    if (!(length(axis) > 0)) return light;
-    light.axis = static_cast<Vec3f>(normalized(axis));
+PointLight RenderSpaceScene::point_light(const ScenePointLight& light, Vec3d position, Vec3d axis) {
+    PointLight converted{static_cast<Vec3f>(position), light.intensity};
+    if (!(length(axis) > 0)) return converted;
+    converted.axis = static_cast<Vec3f>(normalized(axis));
     // Lower bound of KHR_lights_punctual: a spot with equal inner and outer angles would have an infinite slope.
-    const double cos_outer = std::cos(from.outer_cone_rad);
-    const double scale = 1 / std::max(1e-3, std::cos(from.inner_cone_rad) - cos_outer);
-    light.cos_scale = static_cast<float>(scale);
-    light.cos_offset = static_cast<float>(-cos_outer * scale);
-    return light;
+    const double cos_outer = std::cos(light.outer_cone_rad);
+    const double scale = 1 / std::max(1e-3, std::cos(light.inner_cone_rad) - cos_outer);
+    converted.cos_scale = static_cast<float>(scale);
+    converted.cos_offset = static_cast<float>(-cos_outer * scale);
+    return converted;
 }
 
 void RenderSpaceScene::add_lights(const RenderSpaceMesh& mesh, const Affine<double>& map,
                                   const InstanceView* instance) {
     const Scene& scene = mesh.scene();
-    const std::uint32_t number = instance ? static_cast<std::uint32_t>(instances_.size() - 1) : kNoInstance;
+    const std::uint32_t instance_index = instance ? static_cast<std::uint32_t>(instances_.size() - 1) : kNoInstance;
     const bool moves = instance && instance->key_count > 0;
     for (const ScenePointLight& p : scene.points) {
         const Vec3d position = mesh.frame().point(p.position_m), axis = mesh.frame().direction(p.axis);
         points_.push_back(moves ? point_light(p, position, axis)
                                 : point_light(p, map.point(position), map.direction(axis)));
-        if (moves) points_.back().moves_with = static_cast<std::int32_t>(number);
+        if (moves) points_.back().moves_with = static_cast<std::int32_t>(instance_index);
     }
     const InverseAffine<double> inverse = map.inverse();
     area_means_.insert(area_means_.end(), mesh.emission_means().begin(), mesh.emission_means().end());
@@ -282,7 +292,7 @@ void RenderSpaceScene::add_lights(const RenderSpaceMesh& mesh, const Affine<doub
                                       : plane.margin;
         areas_.push_back({corner, static_cast<Vec3f>(u), static_cast<Vec3f>(v), static_cast<Vec3f>(normalized(normal)),
                           scene.materials[t.material].emits_on_both_sides, scene.materials[t.material].emission,
-                          static_cast<float>(0.5 * length(cross(u, v))), margin, emitter, number});
+                          static_cast<float>(0.5 * length(cross(u, v))), margin, emitter, instance_index});
     }
 }
 

@@ -5,11 +5,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Return views with every array replaced by a copy, such as one on a device: `copy(pointer, count)` copies an array and
-// returns the address of the copy. Transferring a scene to a device needs no other knowledge of its members.
+// These functions return views with every array replaced by a copy, such as one on a device: `copy(pointer, count)`
+// copies an array and returns the address of the copy. Transferring a scene to a device needs no other knowledge of its
+// members.
 
 namespace scene_arrays_detail {
 
+/// Replaces an array by its copy; a null pointer stays.
 template <class T, class Copy>
 void replace(const T*& array, std::int64_t count, Copy&& copy) {
     if (array) array = copy(array, static_cast<std::size_t>(count));
@@ -17,6 +19,7 @@ void replace(const T*& array, std::int64_t count, Copy&& copy) {
 
 }  // namespace scene_arrays_detail
 
+/// Copies all arrays of a mesh, with its textures.
 template <class Copy>
 MeshView with_copied_arrays(MeshView view, Copy&& copy) {
     using scene_arrays_detail::replace;
@@ -65,6 +68,7 @@ SceneView with_copied_arrays(SceneView view, Copy&& copy) {
     return view;
 }
 
+/// Copies the arrays of an InstancesView.
 template <class Copy>
 InstancesView with_copied_arrays(InstancesView view, Copy&& copy) {
     using scene_arrays_detail::replace;
@@ -75,7 +79,7 @@ InstancesView with_copied_arrays(InstancesView view, Copy&& copy) {
     replace(view.light_nodes, view.light_node_count, copy);
     replace(view.leaf_lights, view.leaf_light_count, copy);
     replace(view.light_trails, view.point_count + view.area_count, copy);
-    replace(view.light_shares, view.point_count + view.area_count, copy);
+    replace(view.leaf_probabilities, view.point_count + view.area_count, copy);
     return view;
 }
 

@@ -5,6 +5,8 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Texture lookups: decoding of texels, wrap modes, bilinear interpolation and mipmap levels.
+
 namespace texture_detail {
 
 /// sRGB transfer function (IEC 61966-2-1), from a code value of 0..255 to linear.
@@ -25,39 +27,43 @@ REALCAM_INLINE float linear_by_table(std::uint8_t code, std::integer_sequence<in
 
 }  // namespace texture_detail
 
-/// Uses a table, because a bilinear lookup decodes twelve values.
+/// Returns the linear value, 0 to 1, of an 8-bit sRGB code. Uses a table, because a bilinear lookup decodes twelve
+/// values.
 REALCAM_INLINE float srgb_to_linear(std::uint8_t code) {
     return texture_detail::linear_by_table(code, std::make_integer_sequence<int, 256>{});
 }
 
-/// Maps a row or column index from -1 to count into the texture: to the opposite edge if the texture repeats, otherwise
-/// to the edge texel.
+/// Maps a row or column index from -1 to `count` into the texture of `count` texels: to the opposite edge if the
+/// texture repeats, otherwise to the edge texel.
 REALCAM_INLINE int wrapped_texel(int texel, int count, TextureWrap wrap) {
     const bool repeats = wrap == TextureWrap::repeat;
     if (texel < 0) return repeats ? texel + count : 0;
     return texel < count ? texel : repeats ? texel - count : count - 1;
 }
 
+/// Index of a texel in row-major order.
 REALCAM_INLINE std::int64_t texel_index(const TextureView& texture, int column, int row) {
     return static_cast<std::int64_t>(row) * texture.width + column;
 }
 
+/// Linear colour of a texel.
 REALCAM_INLINE Color texel(const TextureView& texture, int column, int row) {
-    const std::int64_t at = texel_index(texture, column, row);
+    const std::int64_t index = texel_index(texture, column, row);
     if (!texture.rgba) {
-        const float* p = texture.linear_rgba + 4 * at;
+        const float* p = texture.linear_rgba + 4 * index;
         return {p[0], p[1], p[2]};
     }
-    const std::uint8_t* p = texture.rgba + 4 * at;
+    const std::uint8_t* p = texture.rgba + 4 * index;
     if (texture.encoding == TextureEncoding::srgb)
         return {srgb_to_linear(p[0]), srgb_to_linear(p[1]), srgb_to_linear(p[2])};
     constexpr float kStep = 1.0f / 255.0f;
     return {kStep * static_cast<float>(p[0]), kStep * static_cast<float>(p[1]), kStep * static_cast<float>(p[2])};
 }
 
+/// Alpha of a texel, 0 to 1.
 REALCAM_INLINE float texel_alpha(const TextureView& texture, int column, int row) {
-    const std::int64_t at = 4 * texel_index(texture, column, row) + 3;
-    return texture.rgba ? static_cast<float>(texture.rgba[at]) * (1.0f / 255.0f) : texture.linear_rgba[at];
+    const std::int64_t index = 4 * texel_index(texture, column, row) + 3;
+    return texture.rgba ? static_cast<float>(texture.rgba[index]) * (1.0f / 255.0f) : texture.linear_rgba[index];
 }
 
 /// Width or height of the next coarser mipmap level.
@@ -79,38 +85,39 @@ REALCAM_INLINE std::int64_t coarse_texels(const TextureView& texture) {
 
 /// View of a single mipmap level: 0 is the texture itself; levels beyond the coarsest are clamped to it.
 REALCAM_INLINE TextureView level_of(TextureView texture, int level) {
-    std::int64_t before = 0, texels = 0;
+    std::int64_t offset = 0, texels = 0;  // offset: texels of the coarse levels before this one
     const int last = level < texture.coarse_levels ? level : texture.coarse_levels;
     if (last <= 0) return texture;
     for (int i = 0; i < last; ++i) {
-        before += texels;
+        offset += texels;
         texture.width = half_size(texture.width);
         texture.height = half_size(texture.height);
         texels = std::int64_t{texture.width} * texture.height;
     }
     if (texture.rgba)
-        texture.rgba = texture.coarse_rgba + 4 * before;
+        texture.rgba = texture.coarse_rgba + 4 * offset;
     else
-        texture.linear_rgba = texture.coarse_linear_rgba + 4 * before;
+        texture.linear_rgba = texture.coarse_linear_rgba + 4 * offset;
     return texture;
 }
 
 /// The four texels around a point, with the bilinear weights.
-struct TextureSpot {
+struct BilinearTexels {
     int column, row;  ///< indices of the upper left texel
     float right, down;  ///< weights of the right column and of the lower row, 0 to 1
-    int next_column, next_row;
+    int next_column, next_row;  ///< indices of the lower right texel
 };
 
 /// Maps a coordinate to 0..1 according to the wrap mode.
 REALCAM_INLINE float wrapped_coordinate(float u, TextureWrap wrap) {
     if (wrap == TextureWrap::repeat) return u - std::floor(u);
     if (wrap == TextureWrap::clamp) return u < 0.0f ? 0.0f : u > 1.0f ? 1.0f : u;
-    const float in_pair = u - 2.0f * std::floor(0.5f * u);
-    return in_pair > 1.0f ? 2.0f - in_pair : in_pair;
+    const float in_period = u - 2.0f * std::floor(0.5f * u);  // mirrored textures have a period of 2
+    return in_period > 1.0f ? 2.0f - in_period : in_period;
 }
 
-REALCAM_INLINE TextureSpot texture_spot(const TextureView& texture, Vec2f uv, TextureSampler sampler) {
+/// Returns the texels around texture coordinates, which may be any numbers; for a nearest filter, weights of 0 and 1.
+REALCAM_INLINE BilinearTexels bilinear_texels(const TextureView& texture, Vec2f uv, TextureSampler sampler) {
     // Texture transforms may make coordinates overflow.
     if (!(std::fabs(uv.x) + std::fabs(uv.y) < 1e30f)) uv = {0, 0};
     // The fraction is taken first, so that the integers below cannot overflow for coordinates far outside 0..1.
@@ -118,38 +125,39 @@ REALCAM_INLINE TextureSpot texture_spot(const TextureView& texture, Vec2f uv, Te
     const float y = (1.0f - wrapped_coordinate(uv.y, sampler.v)) * static_cast<float>(texture.height) - 0.5f;
     const float left = std::floor(x), top = std::floor(y);
     const int column = static_cast<int>(left), row = static_cast<int>(top);
-    TextureSpot spot = {wrapped_texel(column, texture.width, sampler.u),
-                        wrapped_texel(row, texture.height, sampler.v),
-                        x - left,
-                        y - top,
-                        wrapped_texel(column + 1, texture.width, sampler.u),
-                        wrapped_texel(row + 1, texture.height, sampler.v)};
+    BilinearTexels texels = {wrapped_texel(column, texture.width, sampler.u),
+                             wrapped_texel(row, texture.height, sampler.v),
+                             x - left,
+                             y - top,
+                             wrapped_texel(column + 1, texture.width, sampler.u),
+                             wrapped_texel(row + 1, texture.height, sampler.v)};
     if (sampler.filter == TextureFilter::nearest) {
-        spot.right = spot.right < 0.5f ? 0.0f : 1.0f;
-        spot.down = spot.down < 0.5f ? 0.0f : 1.0f;
+        texels.right = texels.right < 0.5f ? 0.0f : 1.0f;
+        texels.down = texels.down < 0.5f ? 0.0f : 1.0f;
     }
-    return spot;
+    return texels;
 }
 
-/// Bilinear interpolation of texel_at(column, row).
+/// Bilinear interpolation of texel_at(column, row), a function that returns a texel's value.
 template <class TexelAt>
-REALCAM_INLINE auto between_texels(TextureSpot s, TexelAt&& texel_at) {
-    const auto upper = (1.0f - s.right) * texel_at(s.column, s.row) + s.right * texel_at(s.next_column, s.row);
-    const auto lower =
-        (1.0f - s.right) * texel_at(s.column, s.next_row) + s.right * texel_at(s.next_column, s.next_row);
-    return (1.0f - s.down) * upper + s.down * lower;
+REALCAM_INLINE auto interpolate_texels(BilinearTexels texels, TexelAt&& texel_at) {
+    const auto upper = (1.0f - texels.right) * texel_at(texels.column, texels.row) +
+                       texels.right * texel_at(texels.next_column, texels.row);
+    const auto lower = (1.0f - texels.right) * texel_at(texels.column, texels.next_row) +
+                       texels.right * texel_at(texels.next_column, texels.next_row);
+    return (1.0f - texels.down) * upper + texels.down * lower;
 }
 
 /// Bilinear lookup; returns linear values.
 REALCAM_INLINE Color sample_texture(const TextureView& texture, Vec2f uv, TextureSampler sampler = {}) {
-    return between_texels(texture_spot(texture, uv, sampler),
-                          [&](int column, int row) { return texel(texture, column, row); });
+    return interpolate_texels(bilinear_texels(texture, uv, sampler),
+                              [&](int column, int row) { return texel(texture, column, row); });
 }
 
 /// Bilinear lookup of the alpha channel.
 REALCAM_INLINE float sample_texture_alpha(const TextureView& texture, Vec2f uv, TextureSampler sampler = {}) {
-    return between_texels(texture_spot(texture, uv, sampler),
-                          [&](int column, int row) { return texel_alpha(texture, column, row); });
+    return interpolate_texels(bilinear_texels(texture, uv, sampler),
+                              [&](int column, int row) { return texel_alpha(texture, column, row); });
 }
 
 }  // namespace REALCAM_NAMESPACE

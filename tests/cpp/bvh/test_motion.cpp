@@ -52,7 +52,7 @@ Assembly moving_assembly(BvhDraw& draw) {
         Affine<double> begin = drawn_map(draw, mirrors), end = drawn_map(draw, mirrors);
         end.origin = begin.origin + static_cast<Vec3d>(draw.in_cube(2));
         assembly.instances.push_back({objects[i % 2], begin, ""});
-        if (i % 3 != 0) assembly.instances.back().put(Motion{{0, 1}, {begin, end}});
+        if (i % 3 != 0) assembly.instances.back().set_transform(Motion{{0, 1}, {begin, end}});
     }
     return assembly;
 }
@@ -174,7 +174,7 @@ TEST_CASE("motion: lamps shine from where they are") {
     // The same turn and an even stretch: between keys every corner goes along a line.
     end = {2.0 * begin.x, 2.0 * begin.y, 2.0 * begin.z, end.origin};
     assembly.instances.push_back({shared, begin, ""});
-    assembly.instances.back().put(Motion{{0, 1}, {begin, end}});
+    assembly.instances.back().set_transform(Motion{{0, 1}, {begin, end}});
     const RenderSpaceScene moving(assembly, {0, 0, 0}, {0, 1});
     const SceneView view = moving.view();
     REQUIRE(view.area_count == 3);

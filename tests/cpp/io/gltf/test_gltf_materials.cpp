@@ -306,7 +306,7 @@ TEST_CASE("glTF: numbers that no material can have become the nearest, with one 
     CHECK(m.specular_glossiness->glossiness_factor == 0.0f);
     CHECK(file.scene.warnings.size() == 1);
     // 4 + 2 of the base, normal and cutoff, ior and transmission, 4 of the volume, 2 and 3 of the coats, 6.
-    CHECK(file.warned("25 numbers of its materials are out of their range; the nearest within is taken"));
+    CHECK(file.warned("25 numbers of its materials are out of their range; the nearest number in the range is used"));
 
     CHECK(file.extended("KHR_materials_volume", R"("attenuationDistance":1e-300)").volume.attenuation_distance > 0);
     CHECK(std::isinf(
@@ -319,7 +319,7 @@ TEST_CASE("glTF: numbers that no material can have become the nearest, with one 
     check_vec(odd.base_color_factor, 1, 1, 1);
     CHECK_FALSE(odd.double_sided);
     CHECK(file.material(R"("alphaMode":"GLASS")").alpha_mode == AlphaMode::opaque);
-    CHECK(file.warned("an alphaMode is OPAQUE, MASK or BLEND, not \"GLASS\"; OPAQUE is taken"));
+    CHECK(file.warned("an alphaMode must be OPAQUE, MASK or BLEND, not \"GLASS\"; OPAQUE is used"));
 }
 
 TEST_CASE("glTF: a texture transform that is no finite number is left out") {
@@ -328,7 +328,7 @@ TEST_CASE("glTF: a texture transform that is no finite number is left out") {
         std::string text = info(0, R"("extensions":{"KHR_texture_transform":{)" + std::string(wrong) + "}}");
         const GltfMaterial m = file.material(R"("normalTexture":)" + text);
         CHECK(m.normal_texture.transform == io::TextureTransform());
-        CHECK(file.warned("1 transforms of textures are no finite numbers; they are left out"));
+        CHECK(file.warned("1 texture transforms are not finite; they are left out"));
     }
 }
 

@@ -143,9 +143,9 @@ TEST_CASE("glTF: nodes are a tree of any depth, and nothing else") {
     tiny.nodes = R"([{"children":[1,1]},{"mesh":0}])";
     CHECK(has(gltf.error(tiny), "node 1: is listed twice as a child; a node has at most one parent"));
     tiny.nodes = R"([{"children":[1]},{"children":[0],"mesh":0}])";
-    CHECK(has(gltf.error(tiny), "node 0: a node of a scene is listed once, and has no parent"));
+    CHECK(has(gltf.error(tiny), "node 0: a node of a scene must be listed once, and must not have a parent"));
     tiny.nodes = R"([{"children":[0],"mesh":0}])";
-    CHECK(has(gltf.error(tiny), "has no parent"));
+    CHECK(has(gltf.error(tiny), "must not have a parent"));
     tiny.nodes = R"([{"mesh":0},{"children":[2]},{"children":[1]}])";
     CHECK(gltf.error(tiny) == "no error");  // a ring that the scene does not reach
     tiny.nodes = R"([{"children":[5]}])";
@@ -156,10 +156,10 @@ TEST_CASE("glTF: nodes are a tree of any depth, and nothing else") {
     CHECK(has(gltf.error(tiny), "node 0: its mesh"));
     tiny = Tiny();
     tiny.roots = "[0,0]";
-    CHECK(has(gltf.error(tiny), "node 0: a node of a scene is listed once"));
+    CHECK(has(gltf.error(tiny), "node 0: a node of a scene must be listed once"));
     tiny.roots = R"([0],"extras":[)";
     for (int i = 0; i < 100; ++i) tiny.roots += "[";
-    CHECK(has(gltf.error(tiny), "is no valid glTF: line"));
+    CHECK(has(gltf.error(tiny), "is not valid glTF: line"));
 }
 
 TEST_CASE("glTF: names that come twice are distinct instances, and one name takes both") {
@@ -194,7 +194,7 @@ TEST_CASE("glTF: JSON that is deep, long or no JSON") {
               "9999...\"; expected glTF 2.0"));
     CHECK(gltf.error(R"({"asset":{"version":")" + std::string(100000, '9') + R"("}})").size() < 300);
     CHECK(gltf.error("\xef\xbb\xbf" + Tiny().text()) == "no error");
-    CHECK(has(gltf.error("\xff\xfe{\0"), "is no valid glTF"));
+    CHECK(has(gltf.error("\xff\xfe{\0"), "is not valid glTF"));
     std::string long_name = R"({"asset":{"version":"2.0"},"extensionsRequired":[")" + std::string(100000, 'x') + "\"]}";
     CHECK(gltf.error(long_name).size() < 300);
 }
@@ -224,7 +224,7 @@ TEST_CASE("glTF: pictures and buffers that cannot be had") {
     CHECK(has(error(R"("byteLength":42,"uri":"/dev/zero")"), "buffer 0 cannot be read"));
     CHECK(has(error(R"("byteLength":42,"uri":"data:;base64,AAAA")"), "is cut short: 3 of 42 bytes"));
     CHECK(has(error(R"("byteLength":1e15,"uri":"data:;base64,AAAA")"), "is cut short"));
-    CHECK(has(error(R"("byteLength":42,"uri":"data:;base64,A")"), "its data: address is no base64"));
+    CHECK(has(error(R"("byteLength":42,"uri":"data:;base64,A")"), "its data: address is not valid base64"));
 }
 
 TEST_CASE("GLB: chunks without bytes, and of more than there are") {

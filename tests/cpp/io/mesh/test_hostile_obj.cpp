@@ -137,7 +137,7 @@ TEST_CASE("MTL: what is wrong is a counted warning, or an error that names its o
         const Scene scene = warnings(std::string(key) + "\nnewmtl m\nKd .1 .2 .3\n");
         check_vec(scene.materials[scene.triangles[0].material].diffuse, .1, .2, .3);
     }
-    CHECK(warns(warnings("Kd 1 1 1\nnewmtl m\n"), "a.mtl: 1 lines stand before the first \"newmtl\""));
+    CHECK(warns(warnings("Kd 1 1 1\nnewmtl m\n"), "a.mtl: 1 lines precede the first \"newmtl\""));
     CHECK(warns(warnings("newmtl m\nKd 1 x 1\nNs\n"), "a.mtl: line 2 cannot be read, nor 1 others"));
     CHECK(warns(warnings("newmtl other\n"), "no MTL file has the material \"m\""));
     check_vec(warnings("\xef\xbb\xbfnewmtl m\r\nKd 0.25\r\n").materials[0].diffuse, .25, .25, .25);
@@ -182,9 +182,9 @@ TEST_CASE("PLY: elements that promise what is not there") {
     const auto body = [&](const std::string& face) {
         return error_of(folder.write("a.ply", ply_header(kPlyVertices + kPlyFace) + "0 0 0\n1 0 0\n0 1 0\n" + face));
     };
-    CHECK(has(body("-3 0 1 2\n"), "face 0: the length of a list is a whole number"));
+    CHECK(has(body("-3 0 1 2\n"), "face 0: the length of a list must be a whole number"));
     CHECK(has(body("1e9 0 1 2\n"), "face 0: is cut short: a list is longer than the 7 bytes that are left"));
-    CHECK(has(body("3 0 1 -2\n"), "face 0: an index is a whole number of at least 0"));
+    CHECK(has(body("3 0 1 -2\n"), "face 0: an index must be a whole number of at least 0"));
     CHECK(
         has(error_of(folder.write("a.ply", ply_header(kPlyVertices + kPlyFace) + "0 0 2e12\n1 0 0\n0 1 0\n3 0 1 2\n")),
             "vertex 0: coordinates must be finite numbers of at most 1e12 m, not (0, 0, 2e+12)"));

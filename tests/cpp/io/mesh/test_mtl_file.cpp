@@ -125,7 +125,7 @@ TEST_CASE("MTL: the illumination model is what it says, or follows from Ks") {
 TEST_CASE("MTL: Tr near 1 without d is the opacity of the whole file, and a warning tells of it") {
     Mtl mtl;
     CHECK(mtl.material("Tr 1\nillum 2\n").d == 1.0f);
-    CHECK(mtl.warned("taken for an opacity"));
+    CHECK(mtl.warned("read as an opacity"));
     CHECK(mtl.material("Tr 0.996078\nnewmtl glass\nTr 0.25\nnewmtl wall\nTr 0\nnewmtl leaf\nTr 0.25\nd 0.5\n").d ==
           0.996078f);
     CHECK(std::get<MtlMaterial>(mtl.scene.materials[1].content).d == 0.25f);
@@ -138,7 +138,7 @@ TEST_CASE("MTL: Tr near 1 without d is the opacity of the whole file, and a warn
 TEST_CASE("MTL: a black Kd beside its texture is white, and a warning tells of it") {
     Mtl mtl;
     check_vec(mtl.material("Kd 0 0 0\nmap_Kd a.png\n").Kd, 1, 1, 1);
-    CHECK(mtl.warned("the texture's colours are taken"));
+    CHECK(mtl.warned("the texture's colours are used"));
     check_vec(mtl.material("map_Kd a.png\nKd 0 0 0.5\nnewmtl black\nKd 0 0 0\n").Kd, 0, 0, 0.5);
     check_vec(std::get<MtlMaterial>(mtl.scene.materials[1].content).Kd, 0, 0, 0);
     CHECK(mtl.scene.warnings.empty());
@@ -155,7 +155,7 @@ TEST_CASE("MTL: keywords do not depend on case, and unknown ones are named once"
     CHECK(mtl.scene.warnings.empty());
     mtl.material("shine 3\nshine 4\nmap_Kd2 a.png\n");
     REQUIRE(mtl.scene.warnings.size() == 1);
-    CHECK(mtl.warned("\"map_Kd2\", \"shine\" are no known statement"));
+    CHECK(mtl.warned("\"map_Kd2\", \"shine\" are unknown statements"));
 }
 
 TEST_CASE("MTL: Tr alone is one less d, and d wins where both are given") {
@@ -243,7 +243,8 @@ TEST_CASE("MTL: numbers that no material can have") {
     CHECK(m.Pcr == 1.0f);
     CHECK(m.Ni == 10.0f);
     CHECK(mtl.scene.warnings.size() == 1);
-    CHECK(mtl.warned("a.mtl: line 2 has a number out of its range, as have 5 others; the nearest within is taken"));
+    CHECK(mtl.warned(
+        "a.mtl: line 2 has a number out of its range, as have 5 others; the nearest number in the range is used"));
     CHECK(mtl.material("Ni 0\n").Ni == 0.001f);
     CHECK(mtl.material("Tr 3\n").d == 0.0f);
     mtl.material("Kd spectral wood.rfl\nKs xyz 1 1 1\nPr\nKd 1 2\n");

@@ -180,7 +180,8 @@ TEST_CASE("bad files: one line that names the file and what is expected") {
     CHECK(has(error_of(folder.write("tiny.obj", "hello\n")), "holds no triangles"));
     CHECK(has(error_of(folder.write("text.obj", "this is a text, and no scene at all\n")), "holds no triangles"));
     CHECK(has(error_of(folder.write("text.ply", "this is a text, and no scene at all\n")), "line 1: expected \"ply\""));
-    CHECK(has(error_of(folder.write("text.glb", "this is a text, and no scene at all\n")), "is no valid glTF: line 1"));
+    CHECK(
+        has(error_of(folder.write("text.glb", "this is a text, and no scene at all\n")), "is not valid glTF: line 1"));
     CHECK(has(error_of(folder.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")), "no triangles"));
     CHECK(has(error_of(folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")), "without area"));
 

@@ -29,7 +29,7 @@ constexpr Vec2f kSome[] = {{0, 0}, {1, 0}, {0, 1}, {0.25f, 0.75f}, {-1.5f, 2.25f
 TEST_CASE("a texture transform scales, turns and moves as glTF says, for vertices and for renderers") {
     const double su = 0.5, sv = -2, angle = 0.7, ou = 0.3, ov = -1.1;
     const TextureTransform transform(su, sv, angle, ou, ov);
-    const TextureReference reference = transform.of(7);
+    const TextureReference reference = transform.reference(7);
     CHECK(reference.texture == 7);
     for (const Vec2f uv : kSome) {
         // The extension's matrices, translation * rotation * scale by columns, of (u, 1 - v).
@@ -41,7 +41,7 @@ TEST_CASE("a texture transform scales, turns and moves as glTF says, for vertice
     }
     for (const Vec2f uv : kSome) {
         check_uv(TextureTransform()(uv.x, uv.y), double(uv.x), double(uv.y));
-        check_uv(by_reference(TextureTransform().of(0), uv), double(uv.x), double(uv.y));
+        check_uv(by_reference(TextureTransform().reference(0), uv), double(uv.x), double(uv.y));
         check_uv(by_reference(TextureReference{}, uv), double(uv.x), double(uv.y));
     }
 }
@@ -50,7 +50,7 @@ TEST_CASE("MTL's options multiply and add, with v upwards") {
     const TextureTransform transform = TextureTransform::of_mtl(2, -3, 0.25, 0.5);
     for (const Vec2f uv : kSome) {
         check_uv(transform(uv.x, uv.y), 2 * double(uv.x) + 0.25, -3 * double(uv.y) + 0.5);
-        check_uv(by_reference(transform.of(0), uv), 2 * double(uv.x) + 0.25, -3 * double(uv.y) + 0.5);
+        check_uv(by_reference(transform.reference(0), uv), 2 * double(uv.x) + 0.25, -3 * double(uv.y) + 0.5);
     }
     CHECK(TextureTransform::of_mtl(1, 1, 0, 0) == TextureTransform());
     CHECK(TextureTransform::of_mtl(1, 1, 0, 1e-9) != TextureTransform());

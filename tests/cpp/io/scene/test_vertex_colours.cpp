@@ -71,7 +71,7 @@ TEST_CASE("OBJ: colours behind the coordinates are sRGB codes, of a white surfac
     const Scene codes = read(folder.write("b.obj", "v 0 0 0\nv 1 0 0 255 51 0 0.5\nv 0 1 0 0 0 102\n" + faces));
     check_colour(colour_at(codes, 0, 1), 1, linear(51 / 255.0), 0, 0.5);
     check_colour(colour_at(codes, 0, 2), 0, 0, linear(0.4));
-    CHECK(warns(codes, "go beyond 1"));
+    CHECK(warns(codes, "exceed 1"));
     CHECK(codes.materials[0].has_holes());
 
     const Scene none = read(folder.write("c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + faces));

@@ -24,7 +24,7 @@ constexpr double kCosines[] = {1, 0.9, 0.7, 0.5, 0.3, 0.15, 0.05, 0.01};
 Mean albedo(const Surface& surface, double cosine, unsigned seed) {
     constexpr int kFewest = 1 << 12, kMost = 1 << 15;
     const Bsdf bsdf = bsdf_of(surface, eye_at(cosine));
-    const double eta = static_cast<double>(bsdf.border.eta);
+    const double eta = static_cast<double>(bsdf.interface.eta);
     Mean mean;
     Uniform uniform(seed);
     for (int i = 0; i < kMost; ++i) {
