@@ -76,9 +76,9 @@ def plot_pupil_shapes(data: FilmPupils, axes: Axes) -> None:
     boxes = [(o.reshape(-1, 2).min(axis=0), o.reshape(-1, 2).max(axis=0)) for o in data.outlines]
     widest = max(float((high - low).max()) for low, high in boxes)
     for k, (outline, (low, high)) in enumerate(zip(data.outlines, boxes, strict=True)):
-        away = np.array([1.15 * widest * k, 0.0]) - 0.5 * (low + high)
+        offset = np.array([1.15 * widest * k, 0.0]) - 0.5 * (low + high)
         axes.add_collection(
-            LineCollection(list(outline + away), colors=style.field_colour(k), linewidths=1.2, capstyle="round")
+            LineCollection(list(outline + offset), colors=style.field_colour(k), linewidths=1.2, capstyle="round")
         )
         axes.annotate(f"{data.fields_deg[k]:.3g}°", (1.15 * widest * k, -0.62 * widest), ha="center", va="top")
     axes.set_xlim(-0.65 * widest, (1.15 * len(boxes) - 0.5) * widest)

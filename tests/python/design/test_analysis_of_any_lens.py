@@ -168,7 +168,7 @@ def test_reports_of_lenses_that_are_not_of_revolution(name: str, tmp_path: Path)
         assert title in page, title
     assert page.count(f"({x:.3g}, {y:.3g}) mm, RMS") == 2  # spot and wavefront
     assert "no light" not in page
-    with pytest.raises(rc.InputError, match="are points of its film"):
+    with pytest.raises(rc.InputError, match="fields_deg does not apply"):
         analysis.save_report(lens, tmp_path / "r.html", fields_deg=[0, 5, 10])
 
 

@@ -251,7 +251,7 @@ def test_lenses_that_are_not_of_revolution(name: str) -> None:
     ("words", "message"),
     [
         ({"flip": "up"}, 'unknown flip "up"; expected one of none, horizontal, vertical, both'),
-        ({"crop": (5, 5, 90, 5)}, r"crop: 90 x 5 pixels from \(5, 5\) do not lie on the film's 30 x 20 pixels"),
+        ({"crop": (5, 5, 90, 5)}, r"crop: 90 x 5 pixels from \(5, 5\) on do not lie within the film's 30 x 20 pixels"),
         ({"height_m": 1.0, "object_distance_m": math.inf}, "the object is at infinity; use height_deg"),
         ({"height_m": 1.0, "height_deg": 5.0, "object_distance_m": 2.0}, "exclude each other"),
         ({"height_deg": 180.0}, "height_deg must lie between 0 and 180"),
