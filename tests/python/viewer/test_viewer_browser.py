@@ -333,7 +333,7 @@ def test_lenses_are_found_in_the_gallery(bench: BenchPage) -> None:
         assert bench.text("gallery-count") == f"{len(wanted)} of {len(rc.lens_names())}"
         bench.test_id(f"gallery-{choice}").select_option("any")
     bench.test_id("gallery-search").fill("no such lens")
-    assert gallery.get_by_text("No lens fits these choices.").is_visible()
+    assert gallery.get_by_text("No lens matches these filters.").is_visible()
     bench.page.keyboard.press("Escape")
     assert not gallery.is_visible()
     before = bench.picture().astype(int)
