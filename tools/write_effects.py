@@ -25,15 +25,17 @@ Times are those of the frame benchmark's picture through the double Gauss, over 
 
 
 def row_of(effect: rc.EffectInfo) -> str:
-    what = f"{effect.what}; {effect.usage}" if effect.usage else effect.what
+    """Row of the table."""
+    description = f"{effect.what}; {effect.usage}" if effect.usage else effect.what
     times = [f"{time:.2f}" if time else "–" for time in (effect.cpu_time, effect.gpu_time)]
     name = f"{effect.name}.md"
     has_page = (PAGE.parents[1] / name).exists()
     name = f"[`{effect.name}`](../{name})" if has_page else f"`{effect.name}`"
-    return f"| {name} | {what} | {effect.needs} | {', '.join(times)} |\n"
+    return f"| {name} | {description} | {effect.needs} | {', '.join(times)} |\n"
 
 
 def page() -> str:
+    """The page as Markdown."""
     return TOP + "".join(map(row_of, rc.effects())) + BOTTOM
 
 
