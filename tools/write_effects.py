@@ -12,8 +12,8 @@ TOP = """\
 
 *Made by `python tools/write_effects.py` from `cpp/camera/effects/effects.hpp`.*
 
-What a picture may have besides what every picture has. `effects={"dispersion", "ghosts=1e-8", "-motion_blur"}`,
-`--effects` and `effects` in shot files name them; [plan.md](../plan.md) says how `"auto"` decides.
+Effects that pictures can have in addition to what is always simulated. `effects={"dispersion", "ghosts=1e-8",
+"-motion_blur"}`, `--effects` and `effects` in shot files name them; [plan.md](../plan.md) says how `"auto"` decides.
 
 | effect | what it is | what it needs | time, CPU and GPU |
 |---|---|---|---|

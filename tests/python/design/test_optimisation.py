@@ -92,7 +92,7 @@ FRONT = [rc.Variable.radius(0)]
 @pytest.mark.parametrize(
     ("variables", "targets", "message"),
     [
-        ([], {}, "nothing to change"),
+        ([], {}, "must have at least one Variable"),
         ([rc.Variable("colour", 0)], {}, "unknown quantity"),
         ([rc.Variable.radius(99)], {}, "no surface 99"),
         ([rc.Variable.radius(TRIPLET.stop_index)], {}, r"surface \d is a stop, a plane, and has no curvature"),
