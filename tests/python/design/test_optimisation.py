@@ -95,7 +95,7 @@ FRONT = [rc.Variable.radius(0)]
         ([], {}, "must have at least one Variable"),
         ([rc.Variable("colour", 0)], {}, "unknown quantity"),
         ([rc.Variable.radius(99)], {}, "no surface 99"),
-        ([rc.Variable.radius(TRIPLET.stop_index)], {}, r"surface \d is a stop, a plane, and has no curvature"),
+        ([rc.Variable.radius(TRIPLET.stop_index)], {}, r"surface \d is a plane stop and has no curvature"),
         ([rc.Variable.conic(1)], {}, "is a plane: its conic has no effect"),
         ([rc.Variable.thickness(6)], {}, "last surface has no thickness"),
         ([rc.Variable.thickness(0, lower_mm=50)], {}, "the thickness of surface 1 is .* does not lie between"),
