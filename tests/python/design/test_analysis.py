@@ -321,7 +321,7 @@ def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest
 
     monkeypatch.setattr(ReportPlots, "pages", pages_of)
     # What the fisheye's curves are is no matter here. realcam.analysis.mtf is the function.
-    monkeypatch.setattr(import_module("realcam.analysis.mtf"), "_MOST_DOUBLINGS", 2)
+    monkeypatch.setattr(import_module("realcam.analysis.mtf"), "_MAX_DOUBLINGS", 2)
     analysis.save_report(rc.Lens.load(name), tmp_path / "r.html", wavelengths_nm=[546.0], theme="dark")
     text = (tmp_path / "r.html").read_text(encoding="utf-8")
     assert text.count("<svg") == 4
