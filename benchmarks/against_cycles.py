@@ -28,7 +28,7 @@ import realcam as rc
 from cycles_camera import CyclesCamera, Window
 from machine import machine
 from realcam import _core
-from realcam.osl import focus_range, shader_text, wide_f_number
+from realcam.osl import focus_range, shader_text
 from realcam.osl.expressible import check_expressible
 
 LAMP_COLUMNS = 1200
@@ -278,7 +278,7 @@ def colour_errors(
     Returns that of realcam's rays, the excess of Cycles over it, and the noise; NaN if the image is too large.
     """
     point = (0.85 * lit, 0.85 * lit)
-    focused = lens.focused(lamp_m).stopped_down(max(COLOUR_F_NUMBER, wide_f_number(lens)))
+    focused = lens.focused(lamp_m).stopped_down(max(COLOUR_F_NUMBER, lens.wide_open().f_number))
     for columns in COLOUR_COLUMNS:
         frame = Frame(lens, columns)
         lamp = Lamp(frame, focused, point, lamp_m, 20)
@@ -328,7 +328,7 @@ def measured(cycles: CyclesCamera, lens: rc.Lens, with_cost: bool) -> Row:
     lamp_m = max(0.06 * focal_mm, 3 * nearest_m)
     blur_mm = BLUR_PX * max(lens.film_mm) / LAMP_COLUMNS
     # Focus distance, nearer than the lamp, at which its disc has this diameter, by first order.
-    near_m = 1 / (1 / lamp_m + 1e3 * blur_mm * wide_f_number(lens) / focal_mm**2)
+    near_m = 1 / (1 / lamp_m + 1e3 * blur_mm * lens.wide_open().f_number / focal_mm**2)
     cycles.remove("lamp")
     passing_fraction = passing(cycles, lens, shader)
     cycles.lens(shader, keep_brightness=0, dispersion=0, focus_m=0, f_number=0)

@@ -50,8 +50,8 @@ class Engine:
         """Raises InputError if the running version of realcam differs."""
         if self.realcam != __version__:
             raise InputError(
-                f"{folder}: this job was made by realcam {self.realcam}, and this is realcam {__version__}; all machines "
-                "of a job need the same version"
+                f"{folder}: this job was made by realcam {self.realcam}, and this is realcam {__version__}; all "
+                "machines of a job need the same version"
             )
 
     @contextmanager
