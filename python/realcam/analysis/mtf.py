@@ -273,7 +273,7 @@ def _add_labels(axes: Axes, title: str, data: Mtf) -> None:
     """Adds title, y axis and legend, which all plots of MTF share."""
     axes.set_ylim(0, 1.02)
     axes.set_ylabel("contrast")
-    axes.set_title(title if data.method == "diffraction" else f"{title}{'' if title == 'MTF' else ','} of rays alone")
+    axes.set_title(title if data.method == "diffraction" else f"{title}, geometric")
     axes.plot([], [], color=style.GREY, label="tangential")
     axes.plot([], [], "--", color=style.GREY, label="sagittal")
     style.legend_beside(axes)

@@ -91,12 +91,12 @@ class ShotFilm:
         else:
             assert counts is not None
             self._noise.add(exposure, counts, traced)
-        counts, taken = self._noise.next(), float(samples.sum())  # samples of the next round, of all pixels so far
-        if counts.any():
-            left = max(self._noise.left(), float(counts.sum(dtype="int64")))
+        next_counts, taken = self._noise.next(), float(samples.sum())
+        if next_counts.any():
+            left = max(self._noise.left(), float(next_counts.sum(dtype="int64")))
             begin = round_.samples + round_.spp
             progress = {"traces_lights": self._noise.traces_lights, "taken": taken, "left": left}
-            return Round(round_.number + 1, begin, int(counts.max()), counts, **progress)  # type: ignore[arg-type]
+            return Round(round_.number + 1, begin, int(next_counts.max()), next_counts, **progress)  # type: ignore[arg-type]
         if self._record.has_layers:
             return Round(round_.number + 1, 0, self._mean_spp, is_of_layers=True, taken=taken)
         return None

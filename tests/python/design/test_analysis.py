@@ -334,8 +334,8 @@ def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest
         return
     # The edge of its light is too uneven for a transfer function; reasons stay in place.
     titles = [axes.get_title() for axes in pages[1].axes]
-    assert "MTF of rays alone" in titles
-    assert "MTF over the field, of rays alone" in titles
+    assert "MTF, geometric" in titles
+    assert "MTF over the field, geometric" in titles
     renderer = FigureCanvasAgg(pages[2]).get_renderer()
     reasons = [(axes, text) for axes in pages[2].axes for text in axes.texts if "a plane grid" in text.get_text()]
     assert len(reasons) == 1
