@@ -113,7 +113,7 @@ FRONT = [rc.Variable.radius(0)]
             {"operands": [rc.Operand("centre_thickness_mm", surface=99)]},
             "there is no surface 99; the lens has 7",
         ),
-        (FRONT, {"operands": [rc.Operand("mtf_sagittal")]}, "frequency_per_mm is required"),
+        (FRONT, {"operands": [rc.Operand("mtf_sagittal")]}, "needs a frequency_per_mm"),
     ],
 )
 def test_what_makes_no_sense_is_said(variables: list[rc.Variable], targets: dict[str, object], message: str) -> None:

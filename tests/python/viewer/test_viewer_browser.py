@@ -151,7 +151,7 @@ def test_a_wipe_between_two_settings(bench: BenchPage) -> None:
     bench.choose("compare", "these settings")
     before = bench.picture().mean()
     bench.turn("shutter", "ArrowRight", 6)
-    wipe = bench.page.get_by_label("Where one picture ends")
+    wipe = bench.page.get_by_label("Position of the line between both pictures")
     wipe.fill("1")
     longer = bench.picture().mean()
     assert longer > 1.3 * before  # by four times the time
@@ -169,7 +169,7 @@ def test_a_wipe_between_two_settings(bench: BenchPage) -> None:
 def test_a_thin_lens_to_compare_with(bench: BenchPage) -> None:
     before = bench.picture().mean()
     bench.choose("compare", "thin lens")
-    bench.page.get_by_label("Where one picture ends").fill("0")
+    bench.page.get_by_label("Position of the line between both pictures").fill("0")
     # It does not vignette: at the same f-number its corners are brighter.
     assert bench.picture().mean() > 1.02 * before
     bench.choose("compare", "nothing")
