@@ -18,8 +18,8 @@ _ALIKE = frozenset({"v3", "v4"})
 
 @dataclass(frozen=True)
 class Engine:
-    """What determines the bits of samples: the version of realcam, the device ("CPU" or the GPU's name), the Embree
-    version, and the instruction set."""
+    """The software and hardware that determine the bits of samples: the version of realcam, the device ("CPU" or the
+    GPU's name), the Embree version, and the instruction set."""
 
     realcam: str
     device: str
@@ -32,7 +32,7 @@ class Engine:
         name = session.device
         found = re.fullmatch(r"CPU \(Embree ([^,]+), x86-64-([^,]+), .*\)", name)
         if not found:
-            # Of several GPUs, one computes the samples of a unit.
+            # A session with several GPUs computes each unit's samples on one of them.
             return cls(__version__, name.removeprefix("GPU (").removesuffix(")").partition(" + ")[0])
         # A machine with only v3 computes the same bits as one with v4.
         instruction_set = "v3" if found[2] in _ALIKE else found[2]
