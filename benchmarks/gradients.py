@@ -69,6 +69,7 @@ def by_torch(lens: rc.Lens, origins: np.ndarray, directions: np.ndarray) -> Call
             "t": torch.tensor([s.thickness_mm for s in surfaces[:-1]], dtype=torch.float64, requires_grad=True),
             "n": torch.tensor([surfaces[i].material.index(nm) for i in glass], dtype=torch.float64, requires_grad=True),
         }
+        # Ray origins (N, 3) in the frame of the current surface's vertex, directions (N, 3), and the index before it.
         o, d, before = start, start_directions, torch.tensor(1.0, dtype=torch.float64)
         for i, surface in enumerate(surfaces):
             if i > 0:

@@ -59,8 +59,11 @@ def distortion(
 
     film_distance_mm: last vertex to that plane, None is the film; first_order().back_focal_distance_mm is the paraxial
     focus of infinity. projection: None is "tangent" for fields up to 60 degrees, and "angle" for larger ones, because
-    tangents diverge at 90. Other defaults: `samples` fields up to the corner of the film; the design wavelength; the
-    plane in focus. Raises InputError for "tangent" from 90 degrees on.
+    tangents diverge at 90.
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
+    Other defaults: `samples` fields from the axis to the film's corner; the design wavelength.
+    Raises InputError for "tangent" from 90 degrees on.
     """
     source = bundles_of(lens, object_distance_m, bundles)
     fields = fields_of(lens, fields_deg, samples, source)
@@ -112,6 +115,7 @@ def distortion_grid(
 ) -> DistortionGrid:
     """Computes a grid of lines x lines nodes that covers the film in the paraxial image, and its real image.
 
+    Defaults as for distortion().
     Raises InputError if the film's corner is at 80 degrees or more: no plane grid fills the picture.
     """
     source = bundles_of(lens, object_distance_m, bundles)

@@ -40,7 +40,12 @@ def field_curves(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> FieldCurves:
-    """Computes field curves. Defaults: `samples` fields up to the film corner; design wavelength; plane in focus."""
+    """Computes field curves.
+
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
+    Other defaults: `samples` fields from the axis to the film's corner; the design wavelength.
+    """
     wavelengths = lens.wavelength_nm if wavelengths_nm is None else wavelengths_nm
     source, fields, colours = analysis_inputs(lens, fields_deg, wavelengths, object_distance_m, bundles, samples)
     light = [[source.chief(float(field), float(colour)) for field in fields] for colour in colours]

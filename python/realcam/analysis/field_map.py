@@ -94,7 +94,9 @@ def field_map(
     """A map of one of QUANTITIES over the film, whatever symmetry the lens has.
 
     points: number along x and y, up to the film's edges. frequency_per_mm: of mtf-x and mtf-y; None is 20 for a film
-    diagonal of 43 mm, scaled inversely for others. Other defaults: the design wavelength; the plane in focus.
+    diagonal of 43 mm, scaled inversely for others. wavelength_nm: None is the design wavelength.
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
     Distortion is relative to the perspective picture that matches the lens's first order at the film's centre in both
     directions; for an anamorphic lens that picture is squeezed. Raises InputError.
     """

@@ -44,7 +44,9 @@ def film_pupils(
 ) -> FilmPupils:
     """Pupils by real rays from the film to the scene: their edges along radial scan lines about the pupil's centre.
 
-    Defaults: `samples` fields up to the corner of the film; the design wavelength. Coatings are ignored.
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
+    Other defaults: `samples` fields from the axis to the film's corner; the design wavelength. Coatings are ignored.
     """
     source = bundles_of(lens, object_distance_m, bundles)
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm

@@ -38,7 +38,12 @@ def lateral_colour(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> LateralColour:
-    """Computes lateral colour. Defaults: `samples` fields up to the film corner; F line, design wavelength, C line."""
+    """Computes lateral colour.
+
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
+    Other defaults: `samples` fields from the axis to the film's corner; F line, design wavelength, C line.
+    """
     source, fields, colours = analysis_inputs(lens, fields_deg, wavelengths_nm, object_distance_m, bundles, samples)
     design = [source.chief(float(field), lens.wavelength_nm) for field in fields]
     heights = np.array([[source.chief(float(f), float(c)).chief_ray_mm[1] for f in fields] for c in colours])

@@ -69,6 +69,8 @@ def mtf(
     film diagonal of 43 mm, scaled inversely for others. wavelengths_nm: None is F line, design wavelength, C line.
     weights: None is equal weights. defocus_mm: (D,) planes behind the film. method: "diffraction", or "geometric": by
     rays, as many as the highest frequency needs, to 1e-4; nan if 200 000 rays do not determine the contrast to 0.01.
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
     Raises InputError if no light passes.
     """
     if method not in METHODS:

@@ -40,7 +40,12 @@ def seidel_bars(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> SeidelBars:
-    """Computes Seidel sums. Defaults: the film's corner, but at most 60 degrees; the plane in focus."""
+    """Computes Seidel sums.
+
+    field_deg: None is the film's corner, but at most 60 degrees.
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
+    """
     source = bundles_of(lens, object_distance_m, bundles)
     field = min(float(field_angles_deg(lens, 1.0, source)[0]), 60.0) if field_deg is None else field_deg
     table = lens.seidel(field, object_distance_m=source.object_distance_m)

@@ -54,8 +54,11 @@ def spot_diagram(
     """Spots of a hexapolar pattern with `rings` rings, on the film and on defocused planes.
 
     film_mm: (F, 2), film points of the chief rays, in place of angles. defocus_mm: (D,), planes, positive behind the
-    film. Defaults: 0, 0.7 and 1 times the largest image height; F line, design wavelength, C line. Raises InputError if
-    no light passes.
+    film.
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
+    Other defaults: 0, 0.7 and 1 times the largest image height; F line, design wavelength, C line.
+    Raises InputError if no light passes.
     """
     angles: Doubles
     fields: list[FieldPosition]
