@@ -35,13 +35,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--device", default="cpu")
     parser.add_argument("--threads", type=int, default=1, help="number of threads on the CPU")
-    words = parser.parse_args()
+    arguments = parser.parse_args()
     warnings.simplefilter("ignore", UserWarning)
-    spp = 20 if words.device == "cpu" else 400
-    threads = words.threads if words.device == "cpu" else 0
+    spp = 20 if arguments.device == "cpu" else 400
+    threads = arguments.threads if arguments.device == "cpu" else 0
     scene = frame_scene().with_point_light((1.0, 2.0, -6.0), (100, 100, 100))
     where = machine()
-    print(f"{where['processor']}, {words.device}; realcam {where['commit']}; {where['date']}.", end=" ")
+    print(f"{where['processor']}, {arguments.device}; realcam {where['commit']}; {where['date']}.", end=" ")
     print("Made by benchmarks/effects.py.\n")
     print("| lens | effects | s | over none |")
     print("|---|---|---|---|")
@@ -51,7 +51,7 @@ def main() -> None:
         film = rc.Film(side, side, (640, 640))
         camera = frame_camera().replace(lens=lens, film=film)
         sessions = {
-            effects: rc.Session(scene, camera, device=words.device, threads=threads, effects=effects)
+            effects: rc.Session(scene, camera, device=arguments.device, threads=threads, effects=effects)
             for effects in EFFECTS
         }
         for session in sessions.values():

@@ -26,19 +26,19 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--device", default="cpu")
     parser.add_argument("--threads", type=int, default=1, help="number of threads on the CPU")
-    words = parser.parse_args()
+    arguments = parser.parse_args()
     warnings.simplefilter("ignore", UserWarning)
-    threads = words.threads if words.device == "cpu" else 0
+    threads = arguments.threads if arguments.device == "cpu" else 0
     triangle = np.array([[0.0, 0.0, 1e5], [1.0, 0.0, 1e5], [0.0, 1.0, 1e5]])
     scene = rc.Scene.from_arrays(triangle, [[0, 1, 2]]).with_point_light((1500.0, 1000.0, -10000.0), (1e8, 1e8, 1e8))
     lens = rc.Lens.load("double-gauss-50mm").with_coating("bare")
     camera = rc.Camera(lens, film=rc.Film(24, 24, (SIDE, SIDE)), exposure_time_s=1)
-    options = {"device": words.device, "threads": threads}
-    reference = rc.render(scene, camera, spp=8192 if words.device != "cpu" else 2048, effects="ghosts=0", **options)
+    options = {"device": arguments.device, "threads": threads}
+    reference = rc.render(scene, camera, spp=8192 if arguments.device != "cpu" else 2048, effects="ghosts=0", **options)
     white = 4 * float(np.quantile(reference.pixels.max(axis=2), 0.999))
     expected = srgb_codes(reference.pixels.astype(np.float64) / white)
     where = machine()
-    print(f"{where['processor']}, {words.device}; realcam {where['commit']}; {where['date']}.", end=" ")
+    print(f"{where['processor']}, {arguments.device}; realcam {where['commit']}; {where['date']}.", end=" ")
     print("Made by benchmarks/ghosts.py.\n")
     print("| samples per pixel | ms of ghosts | noise, codes |")
     print("|---|---|---|")

@@ -51,15 +51,15 @@ def main() -> None:
     parser.add_argument(
         "--folder", type=Path, help="folder in which the job is created [the system's temporary folder]"
     )
-    words = parser.parse_args()
-    side = 32 * round(words.units**0.5)
+    arguments = parser.parse_args()
+    side = 32 * round(arguments.units**0.5)
     where = machine()
     print(f"{where['processor']}, one thread; realcam {where['commit']}; {where['date']}.", end=" ")
     print("Made by benchmarks/job_units.py.\n")
     print("| units | of | session, CPU s | work, CPU s | adding up, CPU s | beside samples, CPU ms a unit | wall ms |")
     print("|---|---|---|---|---|---|---|")
     for shot, tile in ((wall_shot(side, side, 16), (32, 32)), (wall_shot(768, 512, 256), None)):
-        with tempfile.TemporaryDirectory(dir=words.folder) as folder:
+        with tempfile.TemporaryDirectory(dir=arguments.folder) as folder:
             units, cpu, wall = seconds_of(shot, tile, Path(folder) / "job")
         overhead_ms = [1e3 * (work + adding - session) / units for session, work, adding in (cpu, wall)]
         name = "32 x 32 x 16" if tile else "128 x 128 x 256"

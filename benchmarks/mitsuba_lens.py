@@ -107,15 +107,15 @@ class LensSensor(mi.Sensor):
 def surfaces_from_the_film(lens: rc.Lens) -> list[tuple[float, float, float, float]]:
     """Surfaces in the order of a ray from the film: vertex, mm; curvature, 1/mm; semi-diameter, mm; and the index on
     the film's side over that on the object's side."""
-    rows, before = [], 1.0
-    for index, (surface, vertex) in enumerate(zip(lens.surfaces, lens.vertices_mm, strict=True)):
+    rows, index_in_front = [], 1.0
+    for number, (surface, vertex) in enumerate(zip(lens.surfaces, lens.vertices_mm, strict=True)):
         refracts = surface.type == "refracting"
-        if surface.conic or surface.aspheric_coefficients or (not refracts and index != lens.stop_index):
-            raise SystemExit(f"surface {index + 1}: this sensor supports only spherical surfaces and a stop")
-        behind = surface.material.index(lens.wavelength_nm) if refracts else before
-        rim = lens.stop_semi_diameter_mm if index == lens.stop_index else surface.clear_semi_diameter_mm
-        rows.append((vertex, surface.curvature_per_mm, rim, behind / before))
-        before = behind
+        if surface.conic or surface.aspheric_coefficients or (not refracts and number != lens.stop_index):
+            raise SystemExit(f"surface {number + 1}: this sensor supports only spherical surfaces and a stop")
+        index_behind = surface.material.index(lens.wavelength_nm) if refracts else index_in_front
+        rim = lens.stop_semi_diameter_mm if number == lens.stop_index else surface.clear_semi_diameter_mm
+        rows.append((vertex, surface.curvature_per_mm, rim, index_behind / index_in_front))
+        index_in_front = index_behind
     return rows[::-1]
 
 

@@ -343,15 +343,15 @@ def main() -> None:
     parser.add_argument("--spp", type=int, default=1024)
     parser.add_argument("--output", type=Path, help="file for the results, for benchmarks/results")
     parser.add_argument("--page", action="store_true", help="only write the page")
-    words = parser.parse_args()
-    if words.page:
+    arguments = parser.parse_args()
+    if arguments.page:
         return write_page()
     warnings.simplefilter("ignore", UserWarning)
     outcomes: list[Outcome] = []
-    device = machine()["processor"] if words.device == "cpu" else gpu_name()
-    where = f"{device}, {words.spp} samples, shots of seed {words.seed}"
-    for number in range(words.shots):
-        outcome = outcome_of(random_shot(number, words.seed), words.device, words.spp)
+    device = machine()["processor"] if arguments.device == "cpu" else gpu_name()
+    where = f"{device}, {arguments.spp} samples, shots of seed {arguments.seed}"
+    for number in range(arguments.shots):
+        outcome = outcome_of(random_shot(number, arguments.seed), arguments.device, arguments.spp)
         outcomes.append(outcome)
         print(f"{outcome.shot}: {outcome.planned}; {outcome.planned_s:.2f} of {outcome.everything_s:.2f} s", flush=True)
         for d in outcome.decisions:
@@ -359,8 +359,8 @@ def main() -> None:
                 between = f"{d.measured_at_least:.2g} to {d.measured_at_most:.2g}"
                 sizes = f"foreseen {d.foreseen:.3g}, measured {d.measured:.3g} ({between}) {d.unit}"
                 print(f"    {d.verdict}: {d.effect} {sizes}", flush=True)
-        if words.output:
-            write_record(words.output, where, outcomes)
+        if arguments.output:
+            write_record(arguments.output, where, outcomes)
     print("\n" + "\n".join(summary(outcomes)))
 
 

@@ -23,7 +23,7 @@ def main() -> None:
     parser.add_argument("--size", type=int, default=96)
     parser.add_argument("--max-spp", type=int, default=64)
     parser.add_argument("--reference-spp", type=int, default=2048)
-    words = parser.parse_args()
+    arguments = parser.parse_args()
     warnings.simplefilter("ignore", UserWarning)
     for number, name in enumerate(rc.lens_names()):
         lens = rc.Lens.load(name)
@@ -32,10 +32,10 @@ def main() -> None:
         cost = rc.accuracy_cost(
             scene,
             camera,
-            device=words.device,
-            size=words.size,
-            max_spp=words.max_spp,
-            reference_spp=words.reference_spp,
+            device=arguments.device,
+            size=arguments.size,
+            max_spp=arguments.max_spp,
+            reference_spp=arguments.reference_spp,
             effects=(),
             levels=False,
         )

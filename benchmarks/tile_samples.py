@@ -19,8 +19,8 @@ import realcam as rc
 from plan_shots import board, scene_of
 from realcam.accuracy.errors import codes
 
-SIZE = (240, 160)
-TILE = 16
+SIZE = (240, 160)  # pixels of each picture
+TILE = 16  # pixels along each side of a tile
 
 
 def partly_sharp(lens_name: str, distance: float, wall_ratio: float) -> tuple[rc.Scene, rc.Camera]:
@@ -87,7 +87,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--device", default="cpu")
     parser.add_argument("--noise-codes", type=float, default=2.0)
-    words = parser.parse_args()
+    arguments = parser.parse_args()
     warnings.simplefilter("ignore", UserWarning)
     print("| shot | samples a pixel | noisiest tiles, codes | seconds | the same everywhere | times as long |")
     print("|---|---|---|---|---|---|")
@@ -95,13 +95,13 @@ def main() -> None:
 
         def pair(**samples: object) -> tuple[rc.Image, rc.Image]:
             first, second = (
-                rc.render(scene, camera, seed=seed, effects=(), device=words.device, **samples)  # type: ignore[arg-type]  # noqa: B023
+                rc.render(scene, camera, seed=seed, effects=(), device=arguments.device, **samples)  # type: ignore[arg-type]  # noqa: B023
                 for seed in (1, 2)
             )
             return first, second
 
         pair(spp=1)
-        adaptive = pair(spp="auto", noise_codes=words.noise_codes)
+        adaptive = pair(spp="auto", noise_codes=arguments.noise_codes)
         worst, everywhere = noise_of(*adaptive)
         picture, took = adaptive[0], float(np.mean([seconds_of(image) for image in adaptive]))
         uniform = [pair(spp=4**k) for k in range(2, 6)]

@@ -56,9 +56,9 @@ def main() -> None:
         print(with_licences(repaired, Path(scratch, "open"), arguments.folder))
 
 
-def run(*words: str | Path, env: dict[str, str] | None = None) -> str:
+def run(*command: str | Path, env: dict[str, str] | None = None) -> str:
     """Runs a command in the root folder, and returns its output. Raises CalledProcessError if it fails."""
-    return subprocess.run([*map(str, words)], check=True, stdout=subprocess.PIPE, text=True, cwd=ROOT, env=env).stdout
+    return subprocess.run([*map(str, command)], check=True, stdout=subprocess.PIPE, text=True, cwd=ROOT, env=env).stdout
 
 
 def installed_pythons() -> dict[int, str]:

@@ -13,7 +13,7 @@ from .._core import InputError, __version__
 from ..session import Session
 
 # The kernels of these instruction sets do the same arithmetic, with fused multiply-add; those of v2 have none.
-_ALIKE = frozenset({"v3", "v4"})
+_WITH_EQUAL_BITS = frozenset({"v3", "v4"})
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Engine:
             # A session with several GPUs computes each unit's samples on one of them.
             return cls(__version__, name.removeprefix("GPU (").removesuffix(")").partition(" + ")[0])
         # A machine with only v3 computes the same bits as one with v4.
-        instruction_set = "v3" if found[2] in _ALIKE else found[2]
+        instruction_set = "v3" if found[2] in _WITH_EQUAL_BITS else found[2]
         return cls(__version__, "CPU", found[1], instruction_set)
 
     @property
