@@ -41,7 +41,8 @@ def trace_with_torch(
     """Lens.trace of the lens with `values` (V,) for its variables, differentiable by torch.autograd.
 
     origins_mm, directions: (N, 3), lens frame, in host memory. variables: curvatures, thicknesses, conics, aspheric
-    coefficients, indices, tilts and decentres.
+    coefficients, indices, tilts and decentres. wavelength_nm: None is the design wavelength. start: "film" or "scene",
+    the side on which the rays enter the lens.
     Returns origins, mm, and unit directions (N, 3), optical paths, mm (N,), in float64, and which rays pass (N,). Rays
     that do not pass are zero and have no derivatives. First derivatives by origins, directions and values are
     supported; second derivatives are not. Raises InputError for variables that the lens does not have, ImportError
