@@ -2,15 +2,16 @@
 
     python benchmarks/against_cycles.py [LENS ...] [--cost] [-o TABLE.md]
 
-Needs Blender's Python package bpy, which has its own version of Python. Half a minute of CPU time a lens. Light is that
-of a white world in five places from the middle to a corner, or to the edge of a smaller image. Lamps are squares in six
-places of the film; in focus they show distortion, out of focus the bokeh. A figure is the largest error of all
-places, beside the largest noise, which pairs of pictures with two seeds show.
+Needs Blender's Python package bpy, which requires its own version of Python. Takes half a minute of CPU time per lens.
+Light: illuminance from a white environment at five film points from the centre to a corner, or to the edge of a smaller
+image circle. Lamps: square emitters imaged to six film points; in focus they measure distortion, out of focus the
+bokeh. Each column has the largest error over the film points, and the largest noise, from pairs of pictures with two
+seeds.
 
-Colours are the distance of a lamp's red image from its blue one, compared with rays through glasses of exact index.
+Colours: distance of a lamp's red image from its blue one, compared with rays traced through glasses of exact index.
 
-With --cost there is the CPU time of a ray that passes over that of a ray of Cycles' own camera, in a closed room with a
-lamp. The time in which Blender compiles a shader is not in it.
+With --cost: CPU time of a ray that passes over that of a ray of Cycles' own camera, in a closed room with a lamp,
+without the time in which Blender compiles the shader.
 """
 
 from __future__ import annotations
@@ -27,58 +28,65 @@ import realcam as rc
 from cycles_camera import CyclesCamera, Window
 from machine import machine
 from realcam import _core
-from realcam.osl import focus_range, shader_text, wide_f_number
+from realcam.osl import focus_range, shader_text
 from realcam.osl.expressible import check_expressible
 
-WIDE = 1200
-"""Pixels along the longer side of the film; a tenth of one is 3 um of a film of 36 mm."""
-FINE = (12000, 3000)
-"""The same where colours are measured, the first in which the image of the lamp has room. They are measured at this
-f-number or wide open: so the images are small."""
+LAMP_COLUMNS = 1200
+"""Pixels along the longer side of the film for lamps; a tenth of a pixel is 3 um of a film of 36 mm."""
+COLOUR_COLUMNS = (12000, 3000)
+"""Pixels along the longer side of the film for colours: the first of these in which the lamp's image fits a window."""
 COLOUR_F_NUMBER = 8.0
-ENDS_NM = (400.0, 550.0, 700.0)
-"""Pupils of these wavelengths hold between them those of all others."""
-LARGEST_PX = 128
-"""Sides of the picture of a lamp."""
+"""f-number at which colours are measured, unless the lens is slower: a small aperture makes the images small."""
+PUPIL_WAVELENGTHS_NM = (400.0, 550.0, 700.0)
+"""Wavelengths whose pupils together cover those of all others."""
+MAX_WINDOW_PX = 128
+"""Largest side of the picture of a lamp."""
 BLUR_PX = 12
+"""Diameter of the disc of a lamp out of focus, in pixels of LAMP_COLUMNS."""
 LAMPS = [(0.0, 0.0), (-0.9, -0.6), (-0.6, 0.9), (0.0, 0.5), (0.6, -0.2), (0.9, 0.9)]
-"""In half sides of the film. A picture that is mirrored or upside down has them elsewhere."""
-SIDE_M = 10.0
-"""Of the room in which the cost is measured."""
+"""Film points (x, y) in half sides of the film. They are not symmetric, so that a mirrored picture shows as an
+error."""
+ROOM_M = 10.0
+"""Side of the room in which the cost is measured."""
 
 
 class Row(NamedTuple):
+    """Results of one lens; pairs are the largest error and its noise."""
+
     lens: str
     irradiance: float
+    """Irradiance at the film's centre from an environment of radiance 1, by realcam."""
     light: list[tuple[float, float]]
-    """In five places the error as a share, and its noise."""
+    """Relative error of the irradiance at five film points."""
     passing: float
+    """Fraction of the camera rays that pass the lens."""
     distortion_px: tuple[float, float]
     bokeh_px: tuple[float, float]
     colour_um: tuple[float, float, float]
-    """Red to blue by realcam's rays, what Cycles has more, and the noise."""
+    """Distance from the red to the blue image by realcam's rays, excess of Cycles over it, and noise."""
     cost: float
-    """NaN: not measured."""
+    """Relative CPU time of a ray; NaN: not measured."""
 
 
 class Frame:
-    """A film whose pixels both programs count alike."""
+    """A film with square pixels and an integer resolution, which both programs divide into the same pixels."""
 
     def __init__(self, lens: rc.Lens, longer: int) -> None:
         self.pitch_mm = max(lens.film_mm) / longer
         self.resolution = (round(lens.film_mm[0] / self.pitch_mm), round(lens.film_mm[1] / self.pitch_mm))
         self.film_mm = (self.resolution[0] * self.pitch_mm, self.resolution[1] * self.pitch_mm)
 
-    def window(self, place: tuple[float, float], side: int) -> Window:
-        """About a place, in half sides of the film to the right and up, as far as the film goes."""
+    def window(self, point: tuple[float, float], side: int) -> Window:
+        """Window of side x side pixels about a film point (x, y), in half sides of the film to the right and up; it is
+        moved to lie within the film."""
         columns, rows = self.resolution
         side_x, side_y = min(side, columns), min(side, rows)
-        column = round(0.5 * columns * (1 + place[0]) - 0.5 * side_x)
-        row = round(0.5 * rows * (1 - place[1]) - 0.5 * side_y)
+        column = round(0.5 * columns * (1 + point[0]) - 0.5 * side_x)
+        row = round(0.5 * rows * (1 - point[1]) - 0.5 * side_y)
         return Window(min(max(column, 0), columns - side_x), min(max(row, 0), rows - side_y), side_x, side_y)
 
     def camera(self, lens: rc.Lens, window: Window | None = None) -> rc.Camera:
-        """realcam's, with the film of the window alone."""
+        """Camera of realcam whose film is the window; None: the whole film."""
         columns, rows = self.resolution
         window = window or Window(0, 0, columns, rows)
         film = rc.Film(
@@ -93,37 +101,45 @@ class Frame:
         return rc.Camera(lens, film=film, exposure_time_s=1)
 
 
-def lit_share(lens: rc.Lens) -> float:
-    """How far towards the corner the light is a tenth of that in the middle, as a share of the way."""
-    shares = np.linspace(0, 1, 51)
+def illuminated_fraction(lens: rc.Lens) -> float:
+    """Fraction of the half diagonal of the film within which the irradiance is at least a tenth of the central one."""
+    fractions = np.linspace(0, 1, 51)
     width_mm, height_mm = lens.film_mm
-    light = [lens.film_pupil((0.5 * s * width_mm, 0.5 * s * height_mm)).irradiance for s in shares]
-    return float(shares[np.array(light) > 0.1 * light[0]].max())
+    light = [lens.film_pupil((0.5 * s * width_mm, 0.5 * s * height_mm)).irradiance for s in fractions]
+    return float(fractions[np.array(light) > 0.1 * light[0]].max())
 
 
 def light_errors(cycles: CyclesCamera, lens: rc.Lens, lit: float) -> tuple[float, list[tuple[float, float]]]:
-    """The irradiance in the middle, and its errors in five places."""
+    """Returns the irradiance at the film's centre by realcam, and (relative error, noise) of Cycles at five film
+    points.
+
+    lit: fraction of the half diagonal up to which the points lie.
+    """
     frame = Frame(lens, 300)
     cycles.film(*frame.film_mm, frame.resolution)
     cycles.background(1)
-    # A scene has to have a triangle; this one is behind the camera.
+    # A scene must have a triangle; this one is behind the camera.
     behind = rc.Scene.from_arrays([[0, 0, 1000], [1, 0, 1000], [0, 1, 1000]], [[0, 1, 2]])
     sky = behind.with_environment(1)
     errors = []
-    for place in np.linspace(0, lit, 5):
-        window = frame.window((place, place), 8)
+    for position in np.linspace(0, lit, 5):
+        window = frame.window((position, position), 8)
         own = rc.render(sky, frame.camera(lens, window), effects=(), spp=2048)
-        seen = [cycles.picture(512, window, seed)[..., 1].mean() for seed in (0, 1)]
+        measured_light = [cycles.picture(512, window, seed)[..., 1].mean() for seed in (0, 1)]
         light = float(own.pixels[..., 1].mean())
-        errors.append((np.mean(seen) / light - 1, 0.5 * abs(seen[1] - seen[0]) / light))
-        if not place:
-            middle = light
+        noise = 0.5 * abs(measured_light[1] - measured_light[0])
+        errors.append((np.mean(measured_light) / light - 1, noise / light))
+        if not position:
+            central = light
     cycles.background(0)
-    return middle, errors
+    return central, errors
 
 
 def passing(cycles: CyclesCamera, lens: rc.Lens, shader: str) -> float:
-    """The share of rays that pass, in pixels with a tenth of the middle's light."""
+    """Fraction of the camera rays that pass the lens, over pixels with at least a tenth of the largest irradiance.
+
+    shader: the lens's OSL text, which is changed so that the green channel counts the passing rays.
+    """
     counted = shader.replace("throughput = brightness * film;", "throughput = color(brightness, 1, 0);")
     assert counted != shader
     frame = Frame(lens, 60)
@@ -137,14 +153,17 @@ def passing(cycles: CyclesCamera, lens: rc.Lens, shader: str) -> float:
 
 
 class Lamp:
-    """A square that a lens sees at a place of its film, at a distance along the axis."""
+    """A square emitter that a lens images to a film point.
 
-    def __init__(self, frame: Frame, lens: rc.Lens, place: tuple[float, float], distance_m: float, side_px: float):
+    point: the film point, in half sides of the film. distance_m: along the axis. side_px: side of its image.
+    """
+
+    def __init__(self, frame: Frame, lens: rc.Lens, point: tuple[float, float], distance_m: float, side_px: float):
         columns, rows = frame.resolution
-        pixel = np.array([0.5 * columns * (1 + place[0]), 0.5 * rows * (1 - place[1])])
-        origins, ways = frame.camera(lens).ray(pixel + np.array([[0, 0], [1, 0], [0, 1]]))
-        # Beside and behind the camera, the distance is that along the ray.
-        points = origins + ways * distance_m / max(-ways[0, 2], 0.3)
+        pixel = np.array([0.5 * columns * (1 + point[0]), 0.5 * rows * (1 - point[1])])
+        origins, directions = frame.camera(lens).ray(pixel + np.array([[0, 0], [1, 0], [0, 1]]))
+        # For rays more than 72 degrees from the axis, a distance along the ray in place of the axis.
+        points = origins + directions * distance_m / max(-directions[0, 2], 0.3)
         across, down = 0.5 * side_px * (points[1:] - points[0])
         self.vertices_m = points[0] + np.array([-across + down, across + down, across - down, -across - down])
         self.scene = rc.Scene.from_arrays(
@@ -152,9 +171,9 @@ class Lamp:
         )
 
 
-def lit_window(frame: Frame, lens: rc.Lens, lamp: Lamp, place: tuple[float, float], effects: tuple[str, ...]) -> Window:
-    """Out to where the lamp's light ends."""
-    window = frame.window(place, LARGEST_PX)
+def lit_window(frame: Frame, lens: rc.Lens, lamp: Lamp, point: tuple[float, float], effects: tuple[str, ...]) -> Window:
+    """Smallest window about a film point that contains the lamp's image, but at most MAX_WINDOW_PX wide and high."""
+    window = frame.window(point, MAX_WINDOW_PX)
     rough = rc.render(lamp.scene, frame.camera(lens, window), effects=effects, spp=16).pixels.sum(axis=2)
     rows, columns = (np.flatnonzero(rough.sum(axis=axis) > 1e-4 * rough.sum()) for axis in (1, 0))
     first = (max(columns[0] - 2, 0), max(rows[0] - 2, 0))
@@ -163,20 +182,20 @@ def lit_window(frame: Frame, lens: rc.Lens, lamp: Lamp, place: tuple[float, floa
 
 
 def pictures_of(cycles: CyclesCamera, lamp: Lamp, window: Window) -> list[np.ndarray]:
-    """Two pictures by Cycles, with 1024 samples in all."""
+    """Two pictures of the lamp by Cycles with different seeds, 512 samples each."""
     cycles.mesh("lamp", lamp.vertices_m, np.array([[0, 1, 2, 3]]), 0, 1)
     return [cycles.picture(512, window, seed) for seed in (0, 1)]
 
 
 def centroids(picture: np.ndarray) -> np.ndarray:
-    """(3, 2): of each channel, column and row in pixels."""
+    """(3, 2): column and row of the centroid of each channel, in pixels."""
     rows, columns = np.indices(picture.shape[:2])
     total = picture.sum(axis=(0, 1))
     return np.stack([(picture * axis[..., None]).sum(axis=(0, 1)) / total for axis in (columns, rows)], axis=1)
 
 
 def radius(picture: np.ndarray) -> float:
-    """The root mean square distance of green light from its middle."""
+    """RMS distance of the green light from its centroid, in pixels."""
     rows, columns = np.indices(picture.shape[:2])
     column, row = centroids(picture)[1]
     squared = (columns - column) ** 2 + (rows - row) ** 2
@@ -184,61 +203,69 @@ def radius(picture: np.ndarray) -> float:
 
 
 def lamp_errors(cycles: CyclesCamera, lens: rc.Lens, lit: float, lamp_m: float, focus_m: float) -> tuple[float, float]:
-    """Of six lamps the largest error of place or radius in pixels, and its largest noise."""
-    frame, focused = Frame(lens, WIDE), lens.focused(focus_m)
+    """Largest error over six lamps of the image's centroid or RMS radius, and the largest noise, in pixels.
+
+    lit: fraction of the half diagonal that is illuminated. lamp_m: distance of the lamps; focus_m: distance in focus.
+    """
+    frame, focused = Frame(lens, LAMP_COLUMNS), lens.focused(focus_m)
     cycles.film(*frame.film_mm, frame.resolution)
     cycles.data.cycles_custom["focus_m"] = focus_m
     errors, noise = [], []
     for x, y in LAMPS:
-        place = (lit * x, lit * y)
-        lamp = Lamp(frame, focused, place, lamp_m, 3)
-        window = lit_window(frame, focused, lamp, place, ())
+        point = (lit * x, lit * y)
+        lamp = Lamp(frame, focused, point, lamp_m, 3)
+        window = lit_window(frame, focused, lamp, point, ())
         camera = frame.camera(focused, window)
         own = [rc.render(lamp.scene, camera, effects=(), spp=1024, seed=seed).pixels for seed in (0, 1)]
-        seen = pictures_of(cycles, lamp, window)
-        measures = np.array([[np.append(centroids(each)[1], radius(each)) for each in pair] for pair in (own, seen)])
+        theirs = pictures_of(cycles, lamp, window)
+        # (program, seed, measure): column and row of the green centroid, and radius.
+        measures = np.array([[np.append(centroids(each)[1], radius(each)) for each in pair] for pair in (own, theirs)])
         errors.append(np.abs(np.diff(measures.mean(axis=1), axis=0)))
         noise.append(0.5 * np.hypot(*np.diff(measures, axis=1)))
     return float(np.max(errors)), float(np.max(noise))
 
 
 def colour_of_rays(lens: rc.Lens, lamp: Lamp, outwards: np.ndarray) -> float:
-    """From the red image of the lamp's middle to its blue one, um, by realcam's trace with each glass's own index."""
+    """Distance from the red to the blue image of the lamp's centre, um, by realcam's ray trace with the exact indices.
+
+    outwards: unit vector on the film away from its centre, as in the developed image. NaN if no pupil is found.
+    """
     data = lens.first_order()
-    middle_mm = 1e3 * lamp.vertices_m.mean(axis=0) + [0, 0, lens.film_position_mm]
-    # From before the lens, whose front may bulge.
+    centre_mm = 1e3 * lamp.vertices_m.mean(axis=0) + [0, 0, lens.film_position_mm]
+    # Rays start in a plane in front of the lens, whose first surface may be concave.
     start_mm = min(0.0, lens.surfaces[0].sag_mm(lens.surfaces[0].clear_semi_diameter_mm)) - 1
 
     def traced(x_mm: np.ndarray, y_mm: np.ndarray, wavelength_nm: float) -> tuple[np.ndarray, np.ndarray]:
-        """Which rays pass, towards a grid in the entrance pupil, and where they meet the film."""
+        """Traces rays to a grid in the entrance pupil. Returns which rays pass, and their film points, mm."""
         x, y = (axis.ravel() for axis in np.meshgrid(x_mm, y_mm))
-        ways = np.stack([x, y, np.full_like(x, data.entrance_pupil_position_mm)], axis=1) - middle_mm
-        ways /= np.linalg.norm(ways, axis=1)[:, None]
-        origins = middle_mm + ways * ((start_mm - middle_mm[2]) / ways[:, 2])[:, None]
-        rays = lens.trace(origins, ways, start="scene", wavelength_nm=wavelength_nm)
+        directions = np.stack([x, y, np.full_like(x, data.entrance_pupil_position_mm)], axis=1) - centre_mm
+        directions /= np.linalg.norm(directions, axis=1)[:, None]
+        origins = centre_mm + directions * ((start_mm - centre_mm[2]) / directions[:, 2])[:, None]
+        rays = lens.trace(origins, directions, start="scene", wavelength_nm=wavelength_nm)
         to_film = (lens.film_position_mm - rays.origins_mm[:, 2]) / rays.directions[:, 2]
         return rays.status == 0, (rays.origins_mm + to_film[:, None] * rays.directions)[:, :2]
 
-    # The pupil of a wide lens moves and grows towards the corner: it is looked for farther and farther out.
-    for reach in (0.75, 1.5, 3, 6, 12):
-        across = np.linspace(-reach, reach, 121) * data.entrance_pupil_diameter_mm
-        # Blue light has another pupil than red, where the front bends it much.
-        lit = np.any([traced(across, across, at_nm)[0] for at_nm in ENDS_NM], axis=0).reshape(121, 121)
+    # The pupil of a wide lens moves and grows towards the corner, so that the search grid grows until it contains it.
+    for half_width in (0.75, 1.5, 3, 6, 12):
+        across = np.linspace(-half_width, half_width, 121) * data.entrance_pupil_diameter_mm
+        # The pupil depends on the wavelength if the front elements refract strongly.
+        lit = np.any([traced(across, across, nm)[0] for nm in PUPIL_WAVELENGTHS_NM], axis=0).reshape(121, 121)
         if lit.any() and not (lit[[0, -1]].any() or lit[:, [0, -1]].any()):
             break
     else:
         return math.nan
-    # Then a fine grid over it, as its edge has to be found to a hundredth of its width.
+    # A fine grid over the pupil then resolves its edge to a hundredth of its width.
     margin = 2 * (across[1] - across[0])
     x_mm, y_mm = (
-        np.linspace(at[0] - margin, at[-1] + margin, 141) for at in (across[lit.any(axis=0)], across[lit.any(axis=1)])
+        np.linspace(axis[0] - margin, axis[-1] + margin, 141)
+        for axis in (across[lit.any(axis=0)], across[lit.any(axis=1)])
     )
     light, moments = np.zeros(3), np.zeros(3)
     for first_nm, last_nm, *white in _core._film_of_white("D65"):
-        passed, places = traced(x_mm, y_mm, 0.5 * (first_nm + last_nm))
+        passed, points = traced(x_mm, y_mm, 0.5 * (first_nm + last_nm))
         light += np.array(white) * passed.sum()
         # The image is upside down.
-        moments -= np.array(white) * (places[passed] @ outwards).sum()
+        moments -= np.array(white) * (points[passed] @ outwards).sum()
     centroid = moments / light
     return float(1e3 * (centroid[2] - centroid[0]))
 
@@ -246,59 +273,64 @@ def colour_of_rays(lens: rc.Lens, lamp: Lamp, outwards: np.ndarray) -> float:
 def colour_errors(
     cycles: CyclesCamera, lens: rc.Lens, shader: str, lit: float, lamp_m: float
 ) -> tuple[float, float, float]:
-    """Of a lamp in focus near the corner, from its red image to its blue one away from the axis, um."""
-    place = (0.85 * lit, 0.85 * lit)
-    focused = lens.focused(lamp_m).stopped_down(max(COLOUR_F_NUMBER, wide_f_number(lens)))
-    for longer in FINE:
-        frame = Frame(lens, longer)
-        lamp = Lamp(frame, focused, place, lamp_m, 20)
-        window = lit_window(frame, focused, lamp, place, ("dispersion",))
-        if LARGEST_PX not in (window.columns, window.rows):
+    """Distances from the red to the blue image, outwards, of a lamp in focus near the corner, um.
+
+    Returns that of realcam's rays, the excess of Cycles over it, and the noise; NaN if the image is too large.
+    """
+    point = (0.85 * lit, 0.85 * lit)
+    focused = lens.focused(lamp_m).stopped_down(max(COLOUR_F_NUMBER, lens.wide_open().f_number))
+    for columns in COLOUR_COLUMNS:
+        frame = Frame(lens, columns)
+        lamp = Lamp(frame, focused, point, lamp_m, 20)
+        window = lit_window(frame, focused, lamp, point, ("dispersion",))
+        if MAX_WINDOW_PX not in (window.columns, window.rows):
             break
     else:
         return math.nan, math.nan, math.nan
     cycles.film(*frame.film_mm, frame.resolution)
     cycles.lens(shader, dispersion=1, keep_brightness=0, focus_m=lamp_m, f_number=COLOUR_F_NUMBER)
-    seen = pictures_of(cycles, lamp, window)
+    pictures = pictures_of(cycles, lamp, window)
     outwards = np.array(frame.film_mm) / math.hypot(*frame.film_mm)
     distances = [
         1e3 * frame.pitch_mm * float((outwards * [1, -1]) @ (centroids(each)[2] - centroids(each)[0]))
-        for each in ((seen[0] + seen[1]) / 2, *seen)
+        for each in ((pictures[0] + pictures[1]) / 2, *pictures)
     ]
     own = colour_of_rays(focused, lamp, outwards)
     return own, distances[0] - own, 0.5 * abs(distances[2] - distances[1])
 
 
-def cost(cycles: CyclesCamera, lens: rc.Lens, shader: str, share: float) -> float:
-    """CPU time of a ray that passes over that of a ray of Cycles' own camera, the least of some rounds."""
+def cost(cycles: CyclesCamera, lens: rc.Lens, shader: str, passing_fraction: float) -> float:
+    """CPU time of a passing ray over that of a ray of Cycles' own camera: ratio of the smallest times of four
+    rounds."""
     frame, samples = Frame(lens, 60), 48
     cycles.film(*frame.film_mm, frame.resolution)
-    corners = 0.5 * SIDE_M * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    corners = 0.5 * ROOM_M * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     walls = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
     cycles.mesh("room", corners, walls, 0.7)
-    cycles.mesh("lamp", 0.2 * corners[[2, 3, 7, 6]] + [0, 0.39 * SIDE_M, 0], np.array([[0, 1, 2, 3]]), 0, 1)
+    cycles.mesh("lamp", 0.2 * corners[[2, 3, 7, 6]] + [0, 0.39 * ROOM_M, 0], np.array([[0, 1, 2, 3]]), 0, 1)
     data = lens.first_order()
     times: dict[str, list[float]] = {"thin": [], "real": []}
     for _ in range(4):
-        cycles.thin_lens(abs(data.effective_focal_length_mm), data.f_number, 0.5 * SIDE_M)
+        cycles.thin_lens(abs(data.effective_focal_length_mm), data.f_number, 0.5 * ROOM_M)
         times["thin"].append(cycles.path_s(samples))
         cycles.lens(shader, f_number=0)
         times["real"].append(cycles.path_s(samples))
     cycles.remove("room")
-    return min(times["real"]) / min(times["thin"]) / share
+    return min(times["real"]) / min(times["thin"]) / passing_fraction
 
 
 def measured(cycles: CyclesCamera, lens: rc.Lens, with_cost: bool) -> Row:
+    """Measures all columns of the table for one lens."""
     shader, lens = shader_text(lens), lens.focused(math.inf)
-    lit, data = lit_share(lens), lens.first_order()
+    lit, data = illuminated_fraction(lens), lens.first_order()
     focal_mm = abs(data.effective_focal_length_mm)
     nearest_m = focus_range(lens).nearest_m
     lamp_m = max(0.06 * focal_mm, 3 * nearest_m)
-    blur_mm = BLUR_PX * max(lens.film_mm) / WIDE
-    # By first order, nearer than the lamp, so that its disc has this diameter.
-    near_m = 1 / (1 / lamp_m + 1e3 * blur_mm * wide_f_number(lens) / focal_mm**2)
+    blur_mm = BLUR_PX * max(lens.film_mm) / LAMP_COLUMNS
+    # Focus distance, nearer than the lamp, at which its disc has this diameter, by first order.
+    near_m = 1 / (1 / lamp_m + 1e3 * blur_mm * lens.wide_open().f_number / focal_mm**2)
     cycles.remove("lamp")
-    share = passing(cycles, lens, shader)
+    passing_fraction = passing(cycles, lens, shader)
     cycles.lens(shader, keep_brightness=0, dispersion=0, focus_m=0, f_number=0)
     cycles.data.dof.use_dof = False
     irradiance, light = light_errors(cycles, lens, lit)
@@ -306,11 +338,11 @@ def measured(cycles: CyclesCamera, lens: rc.Lens, with_cost: bool) -> Row:
         lens.name,
         irradiance,
         light,
-        share,
+        passing_fraction,
         lamp_errors(cycles, lens, lit, lamp_m, lamp_m),
         lamp_errors(cycles, lens, lit, lamp_m, max(near_m, nearest_m)),
         colour_errors(cycles, lens, shader, lit, lamp_m),
-        cost(cycles, lens, shader, share) if with_cost else math.nan,
+        cost(cycles, lens, shader, passing_fraction) if with_cost else math.nan,
     )
 
 
@@ -320,20 +352,21 @@ HEADING = (
 
 
 def line(row: Row) -> str:
+    """Line of the table."""
     error, noise = (100 * np.abs(row.light).max(axis=0)).tolist()
-    own, more, doubt = row.colour_um
+    own, excess, noise_um = row.colour_um
     text = (
         f"| `{row.lens}` | {row.irradiance:.4f} | {error:.2f} ± {noise:.2f}% | {100 * row.passing:.0f}% "
         f"| {row.distortion_px[0]:.3f} ± {row.distortion_px[1]:.3f} | {row.bokeh_px[0]:.3f} ± {row.bokeh_px[1]:.3f} "
     )
-    text += f"| {own:.2f} | {more:+.3f} ± {doubt:.3f} |" if math.isfinite(own) else "| | |"
+    text += f"| {own:.2f} | {excess:+.3f} ± {noise_um:.3f} |" if math.isfinite(own) else "| | |"
     return text + (f" {row.cost:.2f} |" if math.isfinite(row.cost) else "")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("lenses", nargs="*", default=rc.lens_names())
-    parser.add_argument("--cost", action="store_true", help="also the cost, which takes twice as long")
+    parser.add_argument("--cost", action="store_true", help="also measure the cost, which takes twice as long")
     parser.add_argument("-o", "--output", type=Path)
     arguments = parser.parse_args()
     cycles = CyclesCamera()

@@ -3,8 +3,8 @@
     python benchmarks/against_mitsuba.py mitsuba.json
 
 Needs Mitsuba with its CUDA variant. Paths are a camera ray and a shadow ray to the area light (integrator "direct"
-with one emitter sample and no BSDF sample). Closest hits are those of rays that leave what a pinhole sees by the cosine
-and evenly over the hemisphere.
+with one emitter sample and no BSDF sample). Closest hits are those of rays from the points that a pinhole camera sees,
+with directions that are cosine-distributed or uniform over the hemisphere.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from mitsuba_scene import frame_scene, sensor
 
 
 def best_rate(count: float, work: Callable[[], object]) -> float:
+    """Rate of the fastest round in 1e9 per second. count: number of rays or paths of a round."""
     times = []
     for _ in range(ROUNDS):  # the first one compiles
         dr.sync_thread()
@@ -35,6 +36,7 @@ def best_rate(count: float, work: Callable[[], object]) -> float:
 
 
 def paths_per_second(scene: mi.Scene, kind: str) -> float:
+    """Paths in 1e9 per second through a sensor, "perspective" or "thinlens"."""
     camera = mi.load_dict(sensor(kind, gpu_camera()))
     integrator = mi.load_dict({"type": "direct", "emitter_samples": 1, "bsdf_samples": 0})
     # A wavefront holds at most 2^32 samples, and 32 to a pass are as fast as more.
@@ -48,6 +50,7 @@ def paths_per_second(scene: mi.Scene, kind: str) -> float:
 
 
 def bounce_rays(scene: mi.Scene, uniform: bool) -> mi.Ray3f:
+    """Rays that leave the visible surface of each pixel, uniformly or with a cosine distribution."""
     camera = mi.load_dict(sensor("perspective", gpu_camera()))
     index = dr.arange(mi.UInt32, WIDTH * HEIGHT)
     position = mi.Point2f((index % WIDTH + 0.5) / WIDTH, (index // WIDTH + 0.5) / HEIGHT)
@@ -65,6 +68,7 @@ def bounce_rays(scene: mi.Scene, uniform: bool) -> mi.Ray3f:
 
 
 def hits_per_second(scene: mi.Scene, rays: mi.Ray3f) -> float:
+    """Closest hits of the rays in 1e9 per second."""
     return best_rate(WIDTH * HEIGHT, lambda: dr.eval(scene.ray_intersect_preliminary(rays)))
 
 

@@ -5,14 +5,13 @@
 Needs the extra `bench`, and LLVM for Mitsuba: 19 is Debian's newest (apt-get install libllvm19). The scene is that of
 `realcam bench frame`: the same triangles, emitter and sky, 640 x 640 pixels, direct light.
 
-Same work: 20 samples of a camera ray and two shadow rays each, where realcam's go to the lamp and to the sky; Mitsuba's
-integrator "direct" with two emitter samples and no BSDF sample, one kernel for the whole picture, compiled before. Both
-take turns, so that what else the machine does falls on both; a figure is the least of four rounds. The pictures are
-compared, and the run stops where they differ.
+Same work: 20 samples per pixel of a camera ray and two shadow rays, in realcam to the lamp and to the sky, in Mitsuba
+by the integrator "direct" with two emitter samples and no BSDF sample, in one kernel for the whole picture that is
+compiled before. The programs alternate, so that other load of the machine affects both, and the smallest time of four
+rounds counts. The run stops if the pictures differ.
 
-Error over time: relative mean square error of pictures against one of many more samples, at rising sample counts,
-through a thin lens and through the double Gauss; Mitsuba with the integrators and the sampler that have the least error
-there.
+Error over time: relative mean square error of pictures at increasing sample counts against one of many more samples,
+through a thin lens and through the double Gauss; Mitsuba uses the integrators and samplers with the smallest errors.
 
 Writes PROCESSOR-N-threads-against-mitsuba.json, .md and .png into benchmarks/results, or the folder of --output.
 """
@@ -42,6 +41,7 @@ from mitsuba_scene import sensor  # noqa: E402
 SKY, SPHERES, BOXES = 100.0, 50, 50
 SPP, ROUNDS = 20, 4
 ERROR_ROUNDS = 3
+# Mitsuba's sensors by realcam's camera models.
 KINDS = {"pinhole": "perspective", "thin": "thinlens"}
 TWO_EMITTER_SAMPLES = {"type": "direct", "emitter_samples": 2, "bsdf_samples": 0}
 # Each integrator with the sampler that had the least error with it, of all that Mitsuba has.
@@ -54,23 +54,25 @@ BEST = {
 
 @dataclass(frozen=True)
 class Program:
-    """Takes a picture of so many samples a pixel with this seed: (H, W), lux on the film."""
+    """A program that renders a picture. render: called with samples per pixel and seed, returns (H, W), lux."""
 
-    take: Callable[[int, int], np.ndarray]
+    render: Callable[[int, int], np.ndarray]
 
     def timed(self, spp: int, seed: int) -> tuple[np.ndarray, float, float]:
         """The picture, its CPU seconds on all threads, and its wall seconds."""
         cpu, wall = time.process_time(), time.perf_counter()
-        picture = self.take(spp, seed)
+        picture = self.render(spp, seed)
         return picture, time.process_time() - cpu, time.perf_counter() - wall
 
 
 def realcam_program(scene: rc.Scene, camera: rc.Camera, threads: int) -> Program:
-    def take(spp: int, seed: int) -> np.ndarray:
+    """Direct light by realcam."""
+
+    def render(spp: int, seed: int) -> np.ndarray:
         image = rc.render(scene, camera, effects=(), spp=spp, seed=seed, max_bounces=0, device="cpu", threads=threads)
         return image.pixels.mean(axis=2) / camera.exposure_time_s
 
-    return Program(take)
+    return Program(render)
 
 
 def mitsuba_program(
@@ -79,21 +81,25 @@ def mitsuba_program(
     integrator: dict[str, object],
     irradiance_of_unit_radiance: np.ndarray | float,
 ) -> Program:
-    """`load_sensor`: for a number of samples; stratified samplers want to know it."""
+    """A picture by Mitsuba. load_sensor: called with the number of samples, which stratified samplers need.
+
+    irradiance_of_unit_radiance: factor from Mitsuba's radiance to illuminance, for each pixel or all.
+    """
     loaded = mi.load_dict(integrator)
     sensors: dict[int, mi.Sensor] = {}
 
-    def take(spp: int, seed: int) -> np.ndarray:
+    def render(spp: int, seed: int) -> np.ndarray:
         if spp not in sensors:
             sensors[spp] = load_sensor(spp)
         image = mi.render(scene, sensor=sensors[spp], integrator=loaded, spp=spp, seed=seed)
         return np.array(image).mean(axis=2) * irradiance_of_unit_radiance
 
-    return Program(take)
+    return Program(render)
 
 
 def irradiance_of_unit_radiance(camera: rc.Camera) -> np.ndarray:
-    """(H, W): what an ideal camera's weights make of it, for Mitsuba's cameras give radiance."""
+    """(H, W): mean weight of an ideal camera's rays, which converts the radiance of Mitsuba's cameras to
+    illuminance."""
     width, height = camera.film.resolution
     spp = 4
     rays = camera.generate_rays(spp=spp)
@@ -101,6 +107,7 @@ def irradiance_of_unit_radiance(camera: rc.Camera) -> np.ndarray:
 
 
 def same_work(scene: rc.Scene, peer: mi.Scene, threads: int) -> Result:
+    """Times of both programs by camera model, and the differences of their pictures. peer: Mitsuba's scene."""
     programs: dict[tuple[str, str], Program] = {}
     for model, kind in KINDS.items():
         camera = frame_camera(model)
@@ -139,10 +146,10 @@ def same_work(scene: rc.Scene, peer: mi.Scene, threads: int) -> Result:
 
 
 def agreement(ours: np.ndarray, theirs: np.ndarray) -> Result:
-    """How far two pictures of the same thing differ. Stops the run where that is more than their noise.
+    """Relative differences of two pictures. Stops the run if they exceed the noise.
 
-    Per pixel both programs are off by a third at 20 samples, Mitsuba by a half in places; the mean of four pictures
-    over 40 x 40 pixels is then off by less than 1%, and over the whole picture by less than 0.1%.
+    At 20 samples the noise of a pixel is a third, in places a half for Mitsuba; that of the mean of four pictures is
+    below 1% over 40 x 40 pixels, and below 0.1% over the whole picture.
     """
 
     def in_blocks(picture: np.ndarray) -> np.ndarray:
@@ -152,17 +159,19 @@ def agreement(ours: np.ndarray, theirs: np.ndarray) -> Result:
     mean = ours.mean() / theirs.mean() - 1
     blocks = float(np.sqrt(np.mean((in_blocks(ours) / in_blocks(theirs) - 1) ** 2)))
     if not (abs(mean) < 0.003 and blocks < 0.02):
-        raise SystemExit(f"not the same work: the pictures differ by {mean:.2%}, blocks of them by {blocks:.2%}")
+        raise SystemExit(
+            f"the programs do not the same work: their means differ by {mean:.2%}, blocks of pixels by {blocks:.2%}"
+        )
     return {"difference_of_means": round(float(mean), 5), "difference_of_blocks_rms": round(blocks, 5)}
 
 
 def relative_mse(picture: np.ndarray, reference: np.ndarray, scale: np.ndarray) -> float:
-    """`scale`: what squared differences are relative to."""
+    """Mean of the squared differences over `scale`, (H, W)."""
     return float(np.mean((picture - reference) ** 2 / scale))
 
 
 def best_programs(peer: mi.Scene, camera: rc.Camera) -> dict[str, Program]:
-    """Mitsuba's, through the thin lens that it has, or the double Gauss as a sensor in Python."""
+    """Mitsuba with each integrator of BEST, through its thin lens, or the double Gauss as a sensor in Python."""
     is_full = camera.model == "full"
 
     def sensor_for(sampler: str) -> Callable[[int], mi.Sensor]:
@@ -180,11 +189,12 @@ def best_programs(peer: mi.Scene, camera: rc.Camera) -> dict[str, Program]:
 def error_over_time(
     scene: rc.Scene, peer: mi.Scene, model: str, threads: int, counts: list[int], reference_spp: int
 ) -> Result:
+    """Errors of all programs at these numbers of samples per pixel."""
     camera = frame_camera(model)
     programs = {"realcam": realcam_program(scene, camera, threads)} | best_programs(peer, camera)
     # A seed that no measured picture has.
-    reference = programs["realcam"].take(reference_spp, 1000)
-    # Black pixels have no relative error: a hundredth of the mean is the least that differences are relative to.
+    reference = programs["realcam"].render(reference_spp, 1000)
+    # In black pixels, differences are relative to a hundredth of the mean.
     scale = reference**2 + (0.01 * reference.mean()) ** 2
     return {
         "reference_spp": reference_spp,
@@ -195,8 +205,10 @@ def error_over_time(
 
 
 def error_at(program: Program, spp: int, reference: np.ndarray, scale: np.ndarray) -> Result:
-    """The error against the reference, and what it is without one: the variance, from pairs of pictures. They are the
-    same where the reference is what the program's pictures converge to."""
+    """Relative mean square error against the reference, relative variance of pictures with different seeds, and times.
+
+    Error and variance are equal if the program's pictures converge to the reference.
+    """
     rounds = [program.timed(spp, seed) for seed in range(1, ERROR_ROUNDS + 1)]  # the first may compile
     pictures = [picture for picture, _, _ in rounds]
     return {
@@ -212,7 +224,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--output", type=Path, default=Path(__file__).parent / "results")
-    parser.add_argument("--quick", action="store_true", help="few samples: to see that it runs")
+    parser.add_argument("--quick", action="store_true", help="few samples, to test the program")
     arguments = parser.parse_args()
     dr.set_thread_count(arguments.threads)
     scene = frame_scene(SPHERES, BOXES, sky=SKY)

@@ -1,4 +1,4 @@
-"""What `realcam bench` measures of the processor: lenses, frames and sensors, with ratios taken in one run."""
+"""CPU benchmarks of `realcam bench`: lenses, frames and sensors, with ratios measured in one run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def lens_rays(threads: int) -> Result:
 
 
 def lens_setup(threads: int) -> Result:
-    """Time to find the pupil again after a change of focus or stop, on one core and on all."""
+    """Time of the pupil search after a change of focus or stop, on one core and on all."""
     del threads  # one, and all
     times = {}
     for name in lens_names():
@@ -41,7 +41,7 @@ def lens_setup(threads: int) -> Result:
 
 
 def _best(work: Callable[[], object], rounds: int = 3) -> float:
-    """Seconds of the fastest round: other programs can only slow one down."""
+    """Seconds of the fastest round, because other load of the machine can only increase a time."""
     times = []
     for _ in range(rounds):
         start = time.perf_counter()
@@ -51,31 +51,31 @@ def _best(work: Callable[[], object], rounds: int = 3) -> float:
 
 
 def _sky() -> Scene:
-    """Nothing but a sky, so that a picture costs what its camera rays cost."""
+    """Scene with only an environment, so that the time of a picture is that of its camera rays."""
     return Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(1.0)
 
 
 def pass_share(threads: int) -> Result:
-    """Share of the sampled rays that pass the lens, whole frame, wide open."""
-    speck = _sky()
+    """Fraction of the sampled rays that pass the lens, whole frame, wide open."""
+    sky = _sky()
     shares = {}
     for name in lens_names():
         lens = Lens.load(name)
         width, height = lens.film_mm
         film = Film(width, height, (300, max(1, round(300 * height / width))))
         stats = render(
-            speck, Camera(lens, film=film), effects=(), spp=16, max_bounces=0, device="cpu", threads=threads
+            sky, Camera(lens, film=film), effects=(), spp=16, max_bounces=0, device="cpu", threads=threads
         ).stats
         shares[name] = round(stats.passed_rays / stats.sampled_rays, 4)
     return {"share": shares, "worst": min(shares.values())}
 
 
 def camera_models(threads: int) -> Result:
-    """640 x 640 pixels of 20 samples of a sky: CPU seconds by camera model. An ideal lens that takes as long as every
-    surface has lost its vector code."""
+    """CPU seconds by camera model of 640 x 640 pixels of 20 samples of an environment. An ideal lens that takes as long
+    as the full one is not vectorised."""
     sky = _sky()
     cpu: dict[str, list[float]] = {}
-    for _ in range(5):  # in turns, so that what else the machine does falls on all alike
+    for _ in range(5):  # the models alternate, so that other load of the machine affects all equally
         for model in ("pinhole", "thin", "mapped", "thick", "full"):
             start = time.process_time()
             stats = render(sky, frame_camera(model), spp=20, effects=(), device="cpu", threads=threads).stats
@@ -94,9 +94,9 @@ def frame(threads: int) -> Result:
     cameras = {model: frame_camera(model) for model in ("full", "thick", "thin", "pinhole")}
     cpu: dict[str, list[float]] = {model: [] for model in cameras}
     wall: dict[str, list[float]] = {model: [] for model in cameras}
-    # Builds the scene's BVH, which is no part of a picture.
+    # Builds the scene's BVH, whose time does not count.
     render(scene, cameras["pinhole"], effects=(), spp=1, device="cpu", threads=threads)
-    for _ in range(5):  # in turns, so that what else the machine does falls on all alike
+    for _ in range(5):  # the models alternate, so that other load of the machine affects all equally
         for model, camera in cameras.items():
             start = time.process_time(), time.perf_counter()
             render(scene, camera, effects=(), spp=20, max_bounces=0, device="cpu", threads=threads)
@@ -112,7 +112,8 @@ def frame(threads: int) -> Result:
 
 
 def sensor(threads: int) -> Result:
-    """A sensor of 24 megapixels: CPU seconds from film to raw on one core, by the electrons of a pixel."""
+    """CPU seconds on one core from exposure to raw values for 24 megapixels, by the mean number of electrons per
+    pixel."""
     del threads  # one core by definition
     chip = Sensor.load("sony-imx900-mono").replace(row_noise_e=0.3, hot_pixel_share=1e-4, hot_pixel_current_e_per_s=50)
     pitch_um, lowest_iso = 2.25, chip.iso_range()[0]

@@ -26,7 +26,7 @@ class Window(NamedTuple):
 
 
 class CyclesCamera:
-    """At the origin, looking along -z with y up, as realcam's cameras do unless told otherwise."""
+    """A camera at the origin that looks along -z with y up, as realcam's cameras do by default."""
 
     def __init__(self) -> None:
         bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -57,7 +57,7 @@ class CyclesCamera:
         self.scene.render.resolution_x, self.scene.render.resolution_y = resolution
 
     def lens(self, shader: str, **parameters: float) -> None:
-        """A shader's source, and its parameters by name."""
+        """Sets the OSL source of the camera's lens shader, and its parameters by name."""
         text = bpy.data.texts.get("lens.osl") or bpy.data.texts.new("lens.osl")
         if text.as_string() != shader:
             text.from_string(shader)
@@ -70,13 +70,13 @@ class CyclesCamera:
         self.data.update_tag()
 
     def thin_lens(self, focal_length_mm: float, f_number: float, focus_m: float) -> None:
-        """Cycles' own camera."""
+        """Selects Cycles' own thin-lens camera."""
         self.data.type, self.data.lens = "PERSP", focal_length_mm
         self.data.dof.use_dof = True
         self.data.dof.aperture_fstop, self.data.dof.focus_distance = f_number, focus_m
 
     def mesh(self, name: str, vertices_m: np.ndarray, faces: np.ndarray, colour: float, radiance: float = 0.0) -> None:
-        """A mesh takes the place of another one of its name."""
+        """Adds a mesh, diffuse or emitting if radiance is not 0, in place of an earlier one with this name."""
         self.remove(name)
         mesh = bpy.data.meshes.new(name)
         mesh.from_pydata(vertices_m.tolist(), [], faces.tolist())
@@ -92,11 +92,12 @@ class CyclesCamera:
         self.scene.collection.objects.link(bpy.data.objects.new(name, mesh))
 
     def remove(self, name: str) -> None:
+        """Removes a mesh, if there is one with this name."""
         if name in bpy.data.meshes:
             bpy.data.meshes.remove(bpy.data.meshes[name])
 
     def picture(self, samples: int, window: Window | None = None, seed: int = 0) -> np.ndarray:
-        """(rows, columns, 3), row 0 at the top."""
+        """Renders a picture, (rows, columns, 3), linear, row 0 at the top. window: None: the whole film."""
         render, cycles = self.scene.render, self.scene.cycles
         cycles.samples, cycles.seed = samples, seed
         render.use_border = render.use_crop_to_border = window is not None
@@ -116,7 +117,10 @@ class CyclesCamera:
         return pixels
 
     def path_s(self, samples: int) -> float:
-        """CPU time of so many samples of each pixel, less what is done once. The first picture compiles the shader."""
+        """CPU time of this number of samples per pixel, without the setup of a picture.
+
+        The time of a picture with one sample is subtracted; an earlier picture compiles the shader.
+        """
         times = []
         for count in (1, 1, samples + 1):
             start = time.process_time()

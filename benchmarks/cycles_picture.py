@@ -23,11 +23,12 @@ SCENES = Path(__file__).resolve().parent.parent / "scenes"
 RESOLUTION, SAMPLES = (330, 220), 192
 POSITION, LOOK_AT = np.array([0.0, 0.25, 1.1]), np.array([0.0, 0.12, 0.0])
 FOCUS_M, EXPOSURE_S = 0.9, 0.01
-DUSK_CD_M2 = (20.0, 28.0, 46.0)
+DUSK_CD_M2 = (20.0, 28.0, 46.0)  # radiance of the environment, red, green and blue
 LENS = "fast-50mm"
 
 
 def by_realcam() -> rc.Image:
+    """The denoised picture by realcam."""
     scene = rc.Scene.load(SCENES / "demo.glb").with_environment(DUSK_CD_M2)
     lens = rc.Lens.load(LENS).focused(FOCUS_M)
     camera = rc.Camera(
@@ -60,7 +61,7 @@ def by_cycles() -> np.ndarray:
     right /= np.linalg.norm(right)
     pose = np.eye(4)
     pose[:3] = np.stack([right, np.cross(backward, right), backward, POSITION], axis=1)
-    # From glTF's frame, whose y is up, to Blender's.
+    # From glTF's frame, whose y axis points up, to Blender's, whose z axis does.
     upright = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
     cycles.scene.camera.matrix_world = Matrix((upright @ pose).tolist())
     cycles.scene.cycles.max_bounces = 6

@@ -1,13 +1,13 @@
-"""Bright dots and noise on glossy spheres, realcam and Mitsuba 3 on the CPU, in one run.
+"""Fireflies and noise on glossy spheres: realcam and Mitsuba 3 on the CPU, in one run.
 
     DRJIT_LIBLLVM_PATH=/usr/lib/x86_64-linux-gnu/libLLVM-19.so python benchmarks/fireflies.py [--threads 2]
 
 Needs the extra `bench`, and LLVM for Mitsuba. Three spheres of rough metal and a floor under a small lamp, a constant
-sky, or a sky with a sun; a pinhole's picture of 32 samples, up to 8 reflections. Each program is measured against its
-own picture of many more samples, because single reflections on microfacets lose light that realcam keeps.
+environment, or one with a sun; pictures of a pinhole camera with 32 samples and up to 8 reflections. The reference is
+the program's own picture with many more samples, because Mitsuba omits multiple scattering between microfacets.
 
-Brightest dot: the largest of any pixel's value over that of the reference. Noise: root mean square error over the
-reference's mean. At equal time: the noise of one second, with which it falls as one over the square root.
+Brightest dot: largest ratio of a pixel to the reference. Noise: root mean square error over the reference's mean. Noise
+of one CPU second: extrapolated by the square root of the time.
 """
 
 from __future__ import annotations
@@ -26,10 +26,11 @@ import mitsuba_shots as shots  # noqa: E402
 from mitsuba_scene import sensor  # noqa: E402
 
 SPP, REFERENCE_SPP, ROUNDS, BOUNCES = 32, 4096, 4, 8
-Take = Callable[[int, int], np.ndarray]
+Render = Callable[[int, int], np.ndarray]  # renders a picture (H, W) with samples per pixel and seed
 
 
 def spheres(lamp: bool, sky: float | np.ndarray) -> shots.Shot:
+    """The scene with or without the lamp. sky: as in Shot."""
     floor = shots.Part(shots.quad([-2, 0, 2], [4, 0, 0], [0, 0, -4]), *shots.diffuse((0.5, 0.5, 0.5)))
     parts = [floor]
     for x, roughness in ((-1.0, 0.1), (0.0, 0.2), (1.0, 0.35)):
@@ -48,7 +49,8 @@ LIGHTS = {
 }
 
 
-def programs(shot: shots.Shot, threads: int) -> dict[str, Take]:
+def programs(shot: shots.Shot, threads: int) -> dict[str, Render]:
+    """Both programs with the scene, by name."""
     lens = rc.Lens.load("double-gauss-50mm").focused(4.0)
     camera = rc.Camera(
         lens, film=rc.Film(36, 24, (240, 160)), model="pinhole", position=(0.2, 1.2, 4.2), look_at=(0, 0.4, 0)
@@ -63,21 +65,21 @@ def programs(shot: shots.Shot, threads: int) -> dict[str, Take]:
         return np.asarray(image.pixels.mean(axis=2), float)
 
     def theirs(spp: int, seed: int) -> np.ndarray:
-        # Of the samplers the one that does best with this integrator.
-        eye = mi.load_dict(sensor("perspective", camera, "multijitter", spp))
-        image = mi.render(peer, sensor=eye, integrator=integrator, spp=spp, seed=seed)
+        # The sampler with the least noise for this integrator.
+        mitsuba_sensor = mi.load_dict(sensor("perspective", camera, "multijitter", spp))
+        image = mi.render(peer, sensor=mitsuba_sensor, integrator=integrator, spp=spp, seed=seed)
         return np.asarray(np.array(image).mean(axis=2), float)
 
     return {"realcam": ours, "Mitsuba path": theirs}
 
 
-def measure(take: Take) -> tuple[float, float, float]:
-    """The brightest dot, the noise, and CPU seconds of a picture."""
-    reference = np.mean([take(REFERENCE_SPP // 4, 1000 + seed) for seed in range(4)], axis=0)
+def measure(render: Render) -> tuple[float, float, float]:
+    """Returns the brightest dot, the noise, and the CPU seconds of a picture."""
+    reference = np.mean([render(REFERENCE_SPP // 4, 1000 + seed) for seed in range(4)], axis=0)
     dots, errors, seconds = [], [], []
     for seed in range(ROUNDS):
         begin = time.process_time()
-        picture = take(SPP, seed)
+        picture = render(SPP, seed)
         seconds.append(time.process_time() - begin)
         lit = reference > 1e-3 * reference.mean()
         dots.append((picture[lit] / reference[lit]).max())
@@ -93,8 +95,8 @@ def main() -> None:
     print("| light | program | brightest dot | noise at 32 samples | CPU s | noise of one CPU second |")
     print("|---|---|---|---|---|---|")
     for light, shot in LIGHTS.items():
-        for name, take in programs(shot(), threads).items():
-            dot, noise, seconds = measure(take)
+        for name, render in programs(shot(), threads).items():
+            dot, noise, seconds = measure(render)
             print(f"| {light} | {name} | {dot:.1f} | {noise:.4f} | {seconds:.2f} | {noise * seconds**0.5:.4f} |")
 
 

@@ -1,17 +1,21 @@
-"""The scene and the camera that benchmarks of a frame have in common."""
+"""Scene and camera shared by benchmarks that render a frame."""
 
 from __future__ import annotations
 
 import numpy as np
 from realcam import Camera, Film, Lens, Material, Scene
 
-Mesh = tuple[np.ndarray, np.ndarray]
+Mesh = tuple[np.ndarray, np.ndarray]  # vertices (V, 3), m, and triangles (T, 3)
 
 FRAME_EMITTER_RADIANCE = 2000.0  # cd/m^2, of the area light of frame_scene_arrays
 
 
 def frame_scene_arrays(spheres: int = 50, boxes: int = 50, rows: int = 32) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Spheres and boxes on a plane under one area light: vertices (m), triangles, a material (1: light) for each."""
+    """Spheres and boxes on a plane under one area light.
+
+    Returns vertices (V, 3), m, triangles (T, 3), and the material of each triangle: 1 for the light, otherwise 0.
+    rows: divisions of a sphere from pole to pole.
+    """
     random = np.random.default_rng(1)
     meshes = [_quad([(-50, 0, 50), (50, 0, 50), (50, 0, -50), (-50, 0, -50)])]
     for _ in range(spheres):
@@ -71,7 +75,7 @@ def _sphere(centre: tuple[float, float, float], radius: float, columns: int = 64
 
 
 def frame_objects(spheres: int) -> Scene:
-    """The spheres of frame_scene, in the same places and without a sky, as objects that share one."""
+    """The spheres of frame_scene at the same positions, without a sky, as instances of one mesh."""
     scene = frame_scene(spheres=0, boxes=0, sky=0.0)
     points, faces = _sphere((0, 0, 0), 0.3)
     sphere = Scene.from_arrays(points, faces)

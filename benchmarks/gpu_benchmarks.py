@@ -1,4 +1,4 @@
-"""What `realcam bench` measures of a GPU."""
+"""GPU benchmarks of `realcam bench`: lenses, closest hits, paths, live frames and instances."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ def gpu_camera(model: str = "full") -> Camera:
 
 
 def _giga(rate: float) -> float:
+    """Rate in 1e9 per second, rounded."""
     return round(rate / 1e9, 3)
 
 
 def gpu_lens_rays(threads: int) -> Result:
-    """Rays per second through lenses on a GPU, float32, whole frame: traced alone, and with film and pupil samples."""
+    """Rays per second through lenses, float32, whole frame: ray tracing alone, and with sampling of film and pupil."""
     del threads
     results = {}
     for name in ("double-gauss-50mm", "phone-4mm"):
@@ -43,7 +44,7 @@ def gpu_lens_rays(threads: int) -> Result:
 
 
 def gpu_hits(threads: int) -> Result:
-    """Closest hits per second of camera rays and of bounces (cosine, uniform), and the time to build hierarchies."""
+    """Closest hits per second of camera rays and of bounces (cosine, uniform), and the build time of BVHs."""
     del threads
     scene = _gpu_scene()
     rates = _core._gpu_hit_rates(scene, gpu_camera(), "cuda")
@@ -60,11 +61,12 @@ def gpu_hits(threads: int) -> Result:
 
 
 def gpu_paths(threads: int) -> Result:
-    """256 samples of 1920 x 1280 pixels: paths of a camera and a shadow ray by camera model, rays by bounces."""
+    """256 samples of 1920 x 1280 pixels: paths (camera ray and shadow ray) by camera model, rays by number of
+    bounces."""
     del threads
     scene = _gpu_scene()
     seconds: dict[str, list[float]] = {}
-    for _ in range(4):  # in turns; the first round warms up
+    for _ in range(4):  # the variants alternate; the first round warms up
         for model in ("pinhole", "thin", "thick", "full"):
             stats = render(scene, gpu_camera(model), effects=(), spp=256, max_bounces=0, device="cuda").stats
             seconds.setdefault(model, []).append(stats.seconds - stats.setup_seconds)
@@ -87,7 +89,10 @@ def gpu_paths(threads: int) -> Result:
 
 
 def _frames_per_second(shoot: Callable[[int], _core.LiveFrame]) -> float:
-    """Of 200 frames, shot by their number and each read while the next three are under way; the first 20 warm up."""
+    """Rate of 200 frames after 20 for warm-up; each frame is read while the next three are in progress.
+
+    shoot: starts the frame with an index.
+    """
     frames: list[_core.LiveFrame] = []
     for i in range(220):
         if i == 20:
@@ -101,7 +106,8 @@ def _frames_per_second(shoot: Callable[[int], _core.LiveFrame]) -> float:
 
 
 def gpu_frames(threads: int) -> Result:
-    """Frames per second of a live view, 640 x 640 pixels of 20 samples, while camera, focus or stop change; a stop."""
+    """Frames per second of a live view, 640 x 640 pixels of 20 samples, while pose, focus or aperture changes; and the
+    time to cancel a frame."""
     del threads
     view = LiveView(_gpu_scene(), device="cuda", max_bounces=0)
     lens = Lens.load("double-gauss-50mm").focused(5.0)
@@ -125,7 +131,7 @@ def gpu_frames(threads: int) -> Result:
 
 
 def _milliseconds_to_stop(view: LiveView, camera: Camera) -> float:
-    """The longest of ten stops of a frame that would take minutes."""
+    """Longest time of ten cancellations of a frame that would take minutes."""
     longest = 0.0
     for _ in range(10):
         view.shoot(camera, spp=1 << 20)
@@ -137,12 +143,13 @@ def _milliseconds_to_stop(view: LiveView, camera: Camera) -> float:
 
 
 def gpu_objects(threads: int) -> Result:
-    """The price of two levels: 103 spheres as objects against their triangles alone; and moving one of them."""
+    """Cost of a two-level BVH: 103 spheres as instances against the same triangles; and frames with a moving
+    instance."""
     del threads
     scenes = {"triangles": frame_scene(spheres=103, boxes=0, sky=0.0), "objects": frame_objects(103)}
     camera = gpu_camera("pinhole")
     seconds: dict[str, list[float]] = {}
-    for _ in range(4):  # in turns; the first round warms up
+    for _ in range(4):  # the variants alternate; the first round warms up
         for name, scene in scenes.items():
             stats = render(scene, camera, effects=(), spp=256, max_bounces=0, device="cuda").stats
             seconds.setdefault(name, []).append(stats.seconds - stats.setup_seconds)

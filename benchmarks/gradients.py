@@ -1,10 +1,9 @@
-"""The gradient of a spot by all radii, thicknesses and indices of a lens: realcam, and reverse mode in PyTorch.
+"""Gradient of a spot size by all radii, thicknesses and indices of a lens: realcam, and reverse mode in PyTorch.
 
     python benchmarks/gradients.py
 
-Times are those of the processor, of all threads together. What PyTorch differentiates is a plain sequential trace of
-spheres in float64, written here: a stand-in for differentiable ray tracers such as DeepLens, which trace in the same
-way. Both get the same rays, in front of the lens.
+Prints CPU times over all threads. PyTorch differentiates the sequential float64 ray trace of spheres below, which
+stands in for differentiable ray tracers such as DeepLens. Both programs trace the same rays from in front of the lens.
 """
 
 from __future__ import annotations
@@ -17,62 +16,68 @@ import realcam as rc
 
 
 def variables_of(lens: rc.Lens) -> list[rc.Variable]:
+    """All radii, thicknesses, and indices of glass, in this order."""
     count = len(lens.surfaces)
-    bends = [i for i in range(count) if lens.surfaces[i].type == "refracting"]
+    refracting = [i for i in range(count) if lens.surfaces[i].type == "refracting"]
     return [
-        *(rc.Variable.radius(i) for i in bends),
+        *(rc.Variable.radius(i) for i in refracting),
         *(rc.Variable.thickness(i) for i in range(count - 1)),
-        *(rc.Variable.index(i) for i in bends if lens.surfaces[i].material.index(lens.wavelength_nm) > 1.1),
+        *(rc.Variable.index(i) for i in refracting if lens.surfaces[i].material.index(lens.wavelength_nm) > 1.1),
     ]
 
 
-def by_realcam(lens: rc.Lens, variables: list[rc.Variable], origins: np.ndarray, towards: np.ndarray) -> np.ndarray:
-    rays = lens.trace(origins, towards, start="scene")
+def by_realcam(lens: rc.Lens, variables: list[rc.Variable], origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
+    """(V,): gradient of the RMS spot radius by realcam. origins, directions: (N, 3), rays in front of the lens, mm."""
+    rays = lens.trace(origins, directions, start="scene")
     film = sum(s.thickness_mm for s in lens.surfaces[:-1]) + lens.film_distance_mm
     film_by = np.array([float(v.quantity == "thickness") for v in variables])  # the film follows the last vertex
     o, d = rays.origins_mm, rays.directions
-    slope, way = d[:, :2] / d[:, 2:], film - o[:, 2:]
-    at = o[:, :2] + way * slope
-    off = at - at.mean(0)
-    # What the RMS radius changes by with each place on the film, then with what that depends on.
-    of_at = off / (len(at) * np.sqrt((off**2).sum(1).mean()))
-    of_film = (of_at * slope).sum(1, keepdims=True)
+    slopes, distances = d[:, :2] / d[:, 2:], film - o[:, 2:]
+    points = o[:, :2] + distances * slopes
+    errors = points - points.mean(0)
+    # Derivatives of the RMS radius by the film points, and from them by the film's position and the rays.
+    by_points = errors / (len(points) * np.sqrt((errors**2).sum(1).mean()))
+    by_film = (by_points * slopes).sum(1, keepdims=True)
     found = rc.backpropagate_rays(
         lens,
         origins,
-        towards,
+        directions,
         variables,
-        of_origins=np.hstack([of_at, -of_film]),
-        of_directions=way / d[:, 2:] * np.hstack([of_at, -of_film]),
+        of_origins=np.hstack([by_points, -by_film]),
+        of_directions=distances / d[:, 2:] * np.hstack([by_points, -by_film]),
         start="scene",
     )
-    return found.by + of_film.sum() * film_by
+    return found.by + by_film.sum() * film_by
 
 
-def by_torch(lens: rc.Lens, origins: np.ndarray, towards: np.ndarray) -> Callable[[], np.ndarray]:
+def by_torch(lens: rc.Lens, origins: np.ndarray, directions: np.ndarray) -> Callable[[], np.ndarray]:
+    """Returns a function that computes the same gradient by PyTorch. Raises ImportError without torch."""
     import torch
 
     torch.set_num_threads(1)  # a thread that waits for the others would count as busy
     surfaces = lens.surfaces
-    bends = [i for i, s in enumerate(surfaces) if s.type == "refracting"]
+    refracting = [i for i, s in enumerate(surfaces) if s.type == "refracting"]
     nm = lens.wavelength_nm
-    glass = [i for i in bends if surfaces[i].material.index(nm) > 1.1]
-    start, way = torch.from_numpy(origins), torch.from_numpy(towards)
+    glass = [i for i in refracting if surfaces[i].material.index(nm) > 1.1]
+    start, start_directions = torch.from_numpy(origins), torch.from_numpy(directions)
 
     def gradient() -> np.ndarray:
-        numbers = {
-            "c": torch.tensor([surfaces[i].curvature_per_mm for i in bends], dtype=torch.float64, requires_grad=True),
+        numbers = {  # curvatures, thicknesses and indices
+            "c": torch.tensor(
+                [surfaces[i].curvature_per_mm for i in refracting], dtype=torch.float64, requires_grad=True
+            ),
             "t": torch.tensor([s.thickness_mm for s in surfaces[:-1]], dtype=torch.float64, requires_grad=True),
             "n": torch.tensor([surfaces[i].material.index(nm) for i in glass], dtype=torch.float64, requires_grad=True),
         }
-        o, d, before = start, way, torch.tensor(1.0, dtype=torch.float64)
+        # Ray origins (N, 3) in the frame of the current surface's vertex, directions (N, 3), and the index before it.
+        o, d, before = start, start_directions, torch.tensor(1.0, dtype=torch.float64)
         for i, surface in enumerate(surfaces):
             if i > 0:
                 o = torch.stack([o[:, 0], o[:, 1], o[:, 2] - numbers["t"][i - 1]], 1)
             if surface.type != "refracting":
                 o = o - (o[:, 2:] / d[:, 2:]) * d
                 continue
-            c = numbers["c"][bends.index(i)]
+            c = numbers["c"][refracting.index(i)]
             f = c * (o * o).sum(1) - 2 * o[:, 2]
             g = d[:, 2] - c * (o * d).sum(1)
             t = f / (g + torch.sqrt(g * g - c * f))
@@ -82,8 +87,8 @@ def by_torch(lens: rc.Lens, origins: np.ndarray, towards: np.ndarray) -> Callabl
             mu, cosine = before / after, (d * normal).sum(1)
             d = mu * d + (torch.sqrt(1 - mu * mu * (1 - cosine * cosine)) - mu * cosine)[:, None] * normal
             before = after
-        at = o[:, :2] + ((lens.film_distance_mm - o[:, 2]) / d[:, 2])[:, None] * d[:, :2]
-        rms = torch.sqrt(((at - at.mean(0)) ** 2).sum(1).mean())
+        points = o[:, :2] + ((lens.film_distance_mm - o[:, 2]) / d[:, 2])[:, None] * d[:, :2]
+        rms = torch.sqrt(((points - points.mean(0)) ** 2).sum(1).mean())
         rms.backward()
         return np.concatenate([numbers[name].grad.numpy() for name in "ctn"])  # type: ignore[union-attr]
 
@@ -91,6 +96,7 @@ def by_torch(lens: rc.Lens, origins: np.ndarray, towards: np.ndarray) -> Callabl
 
 
 def best_cpu_ms(work: Callable[[], object], repeats: int = 40) -> float:
+    """Smallest CPU time of several runs, ms."""
     times = []
     for _ in range(repeats):
         begin = time.process_time()
@@ -105,12 +111,12 @@ def main() -> None:
     for count in (128, 1024, 16384):
         angle, radius = 2.399963 * np.arange(count), 10 * np.sqrt((np.arange(count) + 0.5) / count)
         origins = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(count)])
-        towards = np.tile([0.0, np.sin(0.03), np.cos(0.03)], (count, 1))
-        ours = by_realcam(lens, variables, origins, towards)
-        ms = best_cpu_ms(lambda: by_realcam(lens, variables, origins, towards))  # noqa: B023
+        directions = np.tile([0.0, np.sin(0.03), np.cos(0.03)], (count, 1))
+        ours = by_realcam(lens, variables, origins, directions)
+        ms = best_cpu_ms(lambda: by_realcam(lens, variables, origins, directions))  # noqa: B023
         line = f"{count} rays, {len(variables)} variables: realcam {ms:.2f} ms"
         try:
-            theirs = by_torch(lens, origins, towards)
+            theirs = by_torch(lens, origins, directions)
         except ImportError:
             print(line + "; PyTorch is not installed")
             continue

@@ -1,4 +1,4 @@
-"""The machine that figures are of."""
+"""Description of the machine, for records of benchmark results."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Result = dict[str, object]
 
 
 def machine() -> Result:
-    """Processor, system, version and commit: what a figure means nothing without."""
+    """Returns processor, system, devices, version, commit and date, without which results cannot be interpreted."""
     return {
         "processor": _processor(),
         "system": f"{platform.system()} {platform.release()}",
@@ -33,6 +33,7 @@ def _processor() -> str:
 
 
 def _commit() -> str | None:
+    """The repository's commit; None without git."""
     command = ["git", "-C", str(Path(__file__).parent), "describe", "--always", "--dirty", "--abbrev=12"]
     try:
         return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()

@@ -1,12 +1,12 @@
-"""Memory per triangle of realcam and Mitsuba 3, after a first picture: in the process, or on the GPU.
+"""Memory per triangle of realcam and Mitsuba 3 after a first picture: of the process, or of the GPU.
 
     python benchmarks/memory.py [--device cpu|cuda] [--triangles 2000000] [--output memory.json]
 
-Each program runs in a process of its own, once with a small scene and once with a large one of the same kind (the
-spheres of `realcam bench frame`, without normals, under a lamp); the difference over the triangles is what a triangle
-costs. Counted is what the process holds when the picture is done ("resident"), and the most that it ever held ("peak").
-On a GPU: what the driver says that the process holds there. The arrays from which the scenes are made (12 bytes a
-vertex and 12 a triangle in both) are part of it. Needs Mitsuba; on the CPU also DRJIT_LIBLLVM_PATH.
+Each program runs in a separate process, once with a small scene and once with a large one of the same kind (the spheres
+of `realcam bench frame`, without normals, under a lamp); the memory per triangle is the difference over the additional
+triangles. "resident": memory of the process after the picture; "peak": its maximum. On a GPU: memory that the driver
+reports as used. The input arrays of the scenes (12 bytes per vertex and per triangle in both programs) are included.
+Needs Mitsuba; on the CPU also DRJIT_LIBLLVM_PATH.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from pathlib import Path
 
 PROGRAMS = ("realcam", "mitsuba")
 SPHERE_TRIANGLES = 3968  # of one sphere of frame_scene_arrays, with 32 rows
-SMALL = 2
+SMALL = 2  # spheres of the small scene
 
 
-def take_picture(program: str, device: str, spheres: int) -> None:
-    """A picture of 64 x 64 pixels with one sample each."""
+def render_picture(program: str, device: str, spheres: int) -> None:
+    """Renders 64 x 64 pixels with one sample each, and prints the memory in use as JSON."""
     import realcam as rc
     from frame_scene import frame_camera, frame_scene
 
@@ -45,10 +45,11 @@ def take_picture(program: str, device: str, spheres: int) -> None:
         sensor = mi.load_dict(mitsuba_scene.sensor("perspective", camera))
         integrator = mi.load_dict({"type": "direct", "emitter_samples": 1, "bsdf_samples": 0})
         np.array(mi.render(scene, sensor=sensor, integrator=integrator, spp=1))
-    print(json.dumps(bytes_held(device)))
+    print(json.dumps(bytes_in_use(device)))
 
 
-def bytes_held(device: str) -> dict[str, int]:
+def bytes_in_use(device: str) -> dict[str, int]:
+    """Memory of this process, or of the GPU, in bytes: "resident", and on the CPU also "peak"."""
     if device != "cpu":
         listed = subprocess.run(
             ["nvidia-smi", "--query-gpu=memory.used", "--format=csv,noheader,nounits"],
@@ -67,16 +68,17 @@ def bytes_held(device: str) -> dict[str, int]:
 
 
 def measured(program: str, device: str, spheres: int) -> dict[str, int]:
-    done = subprocess.run(
-        [sys.executable, __file__, "--device", device, "--take", program, str(spheres)],
+    """Memory of a program in a child process."""
+    completed = subprocess.run(
+        [sys.executable, __file__, "--device", device, "--child", program, str(spheres)],
         env=os.environ | {"PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), *sys.path])},
         capture_output=True,
         text=True,
         check=False,
     )
-    if done.returncode:
-        raise SystemExit(f"{program}: {done.stderr}")
-    return json.loads(done.stdout.splitlines()[-1])
+    if completed.returncode:
+        raise SystemExit(f"{program}: {completed.stderr}")
+    return json.loads(completed.stdout.splitlines()[-1])
 
 
 def main() -> None:
@@ -84,19 +86,19 @@ def main() -> None:
     parser.add_argument("--device", default="cpu", choices=["cpu", "cuda"])
     parser.add_argument("--triangles", type=int, default=2_000_000)
     parser.add_argument("--output", type=Path)
-    parser.add_argument("--take", nargs=2, metavar=("PROGRAM", "SPHERES"), help=argparse.SUPPRESS)
+    parser.add_argument("--child", nargs=2, metavar=("PROGRAM", "SPHERES"), help=argparse.SUPPRESS)
     arguments = parser.parse_args()
-    if arguments.take:
-        take_picture(arguments.take[0], arguments.device, int(arguments.take[1]))
+    if arguments.child:
+        render_picture(arguments.child[0], arguments.device, int(arguments.child[1]))
         return
     spheres = max(SMALL + 1, arguments.triangles // SPHERE_TRIANGLES)
     result = {}
     for program in PROGRAMS:
         small, large = (measured(program, arguments.device, count) for count in (SMALL, spheres))
         result[program] = {
-            what: round((large[what] - small[what]) / ((spheres - SMALL) * SPHERE_TRIANGLES), 1) for what in small
+            kind: round((large[kind] - small[kind]) / ((spheres - SMALL) * SPHERE_TRIANGLES), 1) for kind in small
         }
-        print(f"{program}: bytes a triangle: {result[program]}")
+        print(f"{program}: bytes per triangle: {result[program]}")
     if arguments.output:
         arguments.output.write_text(
             json.dumps({"device": arguments.device, "triangles": spheres * SPHERE_TRIANGLES, "bytes": result}, indent=2)

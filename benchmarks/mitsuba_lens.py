@@ -1,6 +1,7 @@
 """A lens of realcam as a sensor of Mitsuba 3, traced surface by surface with Dr.Jit.
 
-Spherical refracting surfaces and a round stop only. mitsuba's variant is to be set before this is imported.
+Supports spherical refracting surfaces and a circular stop. Mitsuba's variant must be set before this module is
+imported.
 """
 
 from __future__ import annotations
@@ -11,13 +12,16 @@ import numpy as np
 import realcam as rc
 from mitsuba_scene import film
 
-ROWS = 33  # of the pupil's table, from the film's middle to its corner
-GRID = 129  # rays each way, with which a row is found
+ROWS = 33  # rows of the pupil table, for film points from the centre to the corner
+GRID = 129  # rays along each side of the grid from which a row is computed
 
 
 def pupil_table(camera: rc.Camera, plane_mm: float, radius_mm: float) -> np.ndarray:
-    """(ROWS, 3): centre and semi-axes, mm, of ellipses in the plane of the exit pupil that hold all light on its way to
-    points of the film at growing distances from the axis, along +x."""
+    """(ROWS, 3): ellipses in the plane of the exit pupil that contain all rays to film points on the +x axis.
+
+    Each row has the ellipse's centre on x and its semi-axes along x and y, mm; the distance of the film point from the
+    axis rises from 0 to the film's corner. plane_mm: position of the plane. radius_mm: of the exit pupil.
+    """
     lens = camera.lens
     side = np.linspace(-1.5 * radius_mm, 1.5 * radius_mm, GRID)
     x, y = (axis.ravel() for axis in np.meshgrid(side, side))
@@ -29,14 +33,17 @@ def pupil_table(camera: rc.Camera, plane_mm: float, radius_mm: float) -> np.ndar
         passed = lens.trace(origins, directions, start="film").status == 0
         px, py = x[passed], y[passed]
         centre, a, b = 0.5 * (px.min() + px.max()), 0.5 * np.ptp(px) + cell, py.max() + cell
-        # Where the outline has corners, the ellipse of its bounds would cut them.
-        grown = max(1.0, np.max(np.hypot((np.abs(px - centre) + cell) / a, (np.abs(py) + cell) / b)))
-        rows.append((centre, a * grown, b * grown))
+        # The ellipse within the bounding box would cut corners of the outline, and is scaled to contain all rays.
+        scale = max(1.0, np.max(np.hypot((np.abs(px - centre) + cell) / a, (np.abs(py) + cell) / b)))
+        rows.append((centre, a * scale, b * scale))
     return np.array(rows)
 
 
 class LensSensor(mi.Sensor):
-    """Weights are irradiance on the film over radiance, so that pictures agree with realcam's without a factor."""
+    """Sensor of a realcam camera, which is passed in the class attribute `camera`.
+
+    Ray weights are irradiance on the film over radiance, so that pictures agree with realcam's without a factor.
+    """
 
     def __init__(self, properties: mi.Properties) -> None:
         super().__init__(properties)
@@ -73,7 +80,7 @@ class LensSensor(mi.Sensor):
         z = 0.001 * (origin.z - self.film_position_mm)
         ray.o = self.position + 0.001 * origin.x * right + 0.001 * origin.y * up + z * backward
         ray.d = direction.x * right + direction.y * up + direction.z * backward
-        # A lost ray goes nowhere.
+        # A blocked ray has no length.
         ray.maxt = dr.select(passed, dr.largest(mi.Float), 0)
         return ray, mi.Spectrum(dr.select(passed & active, weight, 0))
 
@@ -82,12 +89,12 @@ class LensSensor(mi.Sensor):
         return mi.RayDifferential3f(ray), weight
 
     def pupil_point(self, fx: mi.Float, fy: mi.Float, u: mi.Point2f) -> tuple[mi.Point3f, mi.Float]:
-        """A point of the ellipse that belongs to a film point, mm, and the ellipse's area, mm^2."""
+        """Samples the ellipse of a film point (fx, fy), mm. Returns the point, mm, and the ellipse's area, mm^2."""
         distance = dr.hypot(fx, fy)
-        place = dr.minimum(distance * self.rows_per_mm, ROWS - 1.001)
-        row = mi.UInt32(place)
+        position = dr.minimum(distance * self.rows_per_mm, ROWS - 1.001)
+        row = mi.UInt32(position)
         centre, a, b = (
-            dr.lerp(dr.gather(mi.Float, column, row), dr.gather(mi.Float, column, row + 1), place - row)
+            dr.lerp(dr.gather(mi.Float, column, row), dr.gather(mi.Float, column, row + 1), position - row)
             for column in self.table
         )
         disc = mi.warp.square_to_uniform_disk_concentric(u)
@@ -98,22 +105,26 @@ class LensSensor(mi.Sensor):
 
 
 def surfaces_from_the_film(lens: rc.Lens) -> list[tuple[float, float, float, float]]:
-    """Vertex (mm), curvature (1/mm), semi-diameter (mm) and n before over n behind, in the order of a ray from the
-    film."""
-    found, before = [], 1.0
-    for index, (surface, vertex) in enumerate(zip(lens.surfaces, lens.vertices_mm, strict=True)):
-        bends = surface.type == "refracting"
-        if surface.conic or surface.aspheric_coefficients or (not bends and index != lens.stop_index):
-            raise SystemExit(f"surface {index + 1}: spheres and a stop are all that this sensor knows")
-        behind = surface.material.index(lens.wavelength_nm) if bends else before
-        rim = lens.stop_semi_diameter_mm if index == lens.stop_index else surface.clear_semi_diameter_mm
-        found.append((vertex, surface.curvature_per_mm, rim, behind / before))
-        before = behind
-    return found[::-1]
+    """Surfaces in the order of a ray from the film: vertex, mm; curvature, 1/mm; semi-diameter, mm; and the index on
+    the film's side over that on the object's side."""
+    rows, index_in_front = [], 1.0
+    for number, (surface, vertex) in enumerate(zip(lens.surfaces, lens.vertices_mm, strict=True)):
+        refracts = surface.type == "refracting"
+        if surface.conic or surface.aspheric_coefficients or (not refracts and number != lens.stop_index):
+            raise SystemExit(f"surface {number + 1}: this sensor supports only spherical surfaces and a stop")
+        index_behind = surface.material.index(lens.wavelength_nm) if refracts else index_in_front
+        rim = lens.stop_semi_diameter_mm if number == lens.stop_index else surface.clear_semi_diameter_mm
+        rows.append((vertex, surface.curvature_per_mm, rim, index_behind / index_in_front))
+        index_in_front = index_behind
+    return rows[::-1]
 
 
 def trace(surfaces, o: mi.Point3f, d: mi.Vector3f) -> tuple[mi.Point3f, mi.Vector3f, mi.Bool]:
-    """A ray (mm, relative to the front vertex) from the film through every surface."""
+    """Traces rays from the film through all surfaces, as from surfaces_from_the_film().
+
+    o, d: origin, mm, relative to the front vertex, and unit direction. Returns those in front of the lens, and true for
+    rays that pass.
+    """
     passed = mi.Bool(True)
     for vertex, c, rim, ratio in surfaces:
         p = mi.Vector3f(o.x, o.y, o.z - vertex)
@@ -124,7 +135,7 @@ def trace(surfaces, o: mi.Point3f, d: mi.Vector3f) -> tuple[mi.Point3f, mi.Vecto
             gap = c * dr.dot(p, p) - 2 * p.z
             root = dr.square(b) - c * gap
             passed &= root > 0
-            # The meeting point that is near the vertex, without a difference of like numbers; d.z < 0.
+            # The intersection near the vertex, in a form without cancellation; d.z < 0.
             p = dr.fma(d, -gap / (b + dr.safe_sqrt(root)), p)
         passed &= dr.square(p.x) + dr.square(p.y) <= rim * rim
         if ratio != 1:
@@ -138,6 +149,7 @@ def trace(surfaces, o: mi.Point3f, d: mi.Vector3f) -> tuple[mi.Point3f, mi.Vecto
 
 
 def load_lens_sensor(camera: rc.Camera, sampler: str = "independent", spp: int = 1) -> mi.Sensor:
+    """Loads the sensor of a camera; see LensSensor."""
     LensSensor.camera = camera
     mi.register_sensor("realcam_lens", LensSensor)
     return mi.load_dict(

@@ -1,4 +1,4 @@
-"""The benchmarks' scene and cameras for Mitsuba 3. Its variant is to be set before any of this is called."""
+"""The benchmarks' scene and cameras for Mitsuba 3. Its variant must be set before any of these functions is called."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import realcam as rc
 from frame_scene import FRAME_EMITTER_RADIANCE, frame_scene_arrays
 
-Settings = dict[str, object]
+Settings = dict[str, object]  # dictionary for mi.load_dict
 
 
 DIFFUSE: Settings = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.5}}
@@ -19,6 +19,7 @@ TWO_SIDED: Settings = {"type": "twosided", "bsdf": DIFFUSE}
 def mesh(
     name: str, vertices: np.ndarray, faces: np.ndarray, radiance: float = 0.0, bsdf: Settings = DIFFUSE
 ) -> mi.Mesh:
+    """A flat mesh; radiance above 0 (cd/m^2) makes it an emitter."""
     properties = mi.Properties()
     properties["mesh_bsdf"] = mi.load_dict(bsdf)
     if radiance:
@@ -45,14 +46,15 @@ def frame_scene(spheres: int, boxes: int, sky: float = 0.0) -> mi.Scene:
 
 
 def film(width: int, height: int) -> Settings:
+    """Film with a box filter, as realcam's pixels have."""
     return {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgb", "rfilter": {"type": "box"}}
 
 
 def sensor(kind: str, camera: rc.Camera, sampler: str = "independent", spp: int = 1) -> Settings:
-    """The perspective camera or thin lens (`kind`) that realcam's ideal models make of the camera's lens.
+    """Mitsuba's camera that is equivalent to realcam's ideal model of the camera's lens.
 
-    It stands in the entrance pupil, has its radius, and its film has the distance that gives the lens's paraxial
-    magnification of the plane in focus.
+    kind: "perspective" or "thinlens". It lies in the entrance pupil and has its radius; its field of view follows from
+    the lens's paraxial magnification of the plane in focus.
     """
     lens, data = camera.lens, camera.lens.first_order()
     position, look_at = np.array(camera.position), np.array(camera.look_at)

@@ -1,10 +1,10 @@
-"""What a real lens costs in Mitsuba 3: its sensor `realcam` against Mitsuba's own thin lens, on one scene.
+"""Render time of a real lens in Mitsuba 3: the sensor `realcam` against Mitsuba's own thin lens, on one scene.
 
     pip install 'realcam[mitsuba]'
     DRJIT_LIBLLVM_PATH=/usr/lib/x86_64-linux-gnu/libLLVM-19.so python benchmarks/mitsuba_sensor.py [LENS ...]
 
-The scene is Mitsuba's Cornell box with its integrator `path`. Both sensors take turns with compiled kernels, and a
-figure is the least CPU time of all rounds, on all threads.
+The scene is Mitsuba's Cornell box with its integrator `path`. Both sensors alternate with compiled
+kernels, and the smallest CPU time of all rounds counts, over all threads.
 """
 
 from __future__ import annotations
@@ -17,11 +17,13 @@ import mitsuba as mi
 import realcam as rc
 
 PIXELS, SPP, ROUNDS = 512, 32, 5
-DISTANCE_M = 4.6
 
 
 def sensor(kind: str, lens: rc.Lens) -> dict[str, object]:
-    """From where the box fills the picture: the thin lens has focal length and f-number of the real one."""
+    """Settings of a sensor at the distance at which the Cornell box fills the picture.
+
+    kind: "realcam" or "thinlens"; the thin lens has the focal length and the f-number of the real one.
+    """
     data, side_mm = lens.first_order(), 0.62 * min(lens.film_mm)
     distance_m = 2.3 * data.effective_focal_length_mm / side_mm
     settings: dict[str, object] = {

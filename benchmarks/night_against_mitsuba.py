@@ -2,12 +2,12 @@
 
     DRJIT_LIBLLVM_PATH=/usr/lib/x86_64-linux-gnu/libLLVM-19.so python benchmarks/night_against_mitsuba.py [--threads 2]
 
-Both programs get the same triangles, lamps and sky from one generator, and direct light. Mitsuba takes its integrator
-"path" with the sampler "multijitter", and the double Gauss as a sensor in Python (mitsuba_lens.py). The reference is
-Mitsuba's and realcam's picture of many samples, half and half: what both converge to, whichever is right.
+Both programs render the same triangles, lamps and sky with direct light. Mitsuba uses its integrator "path" with the
+sampler "multijitter", and the double Gauss as a sensor in Python (mitsuba_lens.py). The reference is the mean of
+Mitsuba's and realcam's pictures with many samples, so that it favours neither program.
 
-Prints, for each scene, relative mean square errors over CPU seconds, and the seconds to an error of 0.01: measured at
-the sample counts around it, in between by the power law through both.
+Prints, for each scene, relative mean square errors over CPU seconds, and the seconds to an error of 0.01, interpolated
+by a power law between the neighbouring sample counts.
 """
 
 from __future__ import annotations
@@ -30,25 +30,26 @@ from mitsuba_lens import load_lens_sensor
 from mitsuba_scene import TWO_SIDED, mesh
 
 FILM = rc.Film(36, 24, (240, 160))
-WANTED = 0.01  # relative mean square error
-PATH = {"type": "path", "max_depth": 2}  # emitters that are seen, and direct light
+GOAL = 0.01  # relative mean square error
+PATH = {"type": "path", "max_depth": 2}  # visible emitters and direct light
 
 Mesh = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
 class Night:
-    """Diffuse things, lamps by their radiance (cd/m^2), and a sky; where the lens stands, looks and is focused (m)."""
+    """A scene of diffuse objects and lamps, with a camera; lengths in metres."""
 
-    things: list[Mesh]
-    lamps: dict[float, list[Mesh]]
-    sky: float
-    focus_m: float
+    objects: list[Mesh]
+    lamps: dict[float, list[Mesh]]  # by radiance, cd/m^2
+    sky: float  # radiance of the environment, cd/m^2
+    focus_m: float  # focus distance
     position: tuple[float, float, float] = (0, 0, 0)
     look_at: tuple[float, float, float] = (0, 0, -1)
 
 
 def _joined(meshes: list[Mesh]) -> Mesh:
+    """All meshes as one."""
     firsts = np.cumsum([0, *(len(points) for points, _ in meshes)])
     return (
         np.concatenate([points for points, _ in meshes]),
@@ -73,26 +74,26 @@ def garlands() -> Night:
 
 
 def street() -> Night:
-    """Lamps of a street at 8 to 60 m, seen past something at 1.5 m."""
+    """Street lamps at 8 to 60 m behind a ball in focus at 1.5 m."""
     lamps = [_sphere((side * 3.5, 2.5, -z), 0.08, 12, 6) for side in (-1, 1) for z in np.linspace(8, 60, 10)]
     walls = [_quad([(x, -6, 0), (x, 6, 0), (x, 6, -70), (x, -6, -70)]) for x in (-5, 5)]
     return Night([_ground(-1.5), _sphere((0.1, -0.1, -1.5), 0.15, 32, 16), *walls], {2e4: lamps}, 0.2, 1.5)
 
 
 def before_the_focus() -> Night:
-    """Lamps at 0.5 to 0.8 m, where the lens is focused at 4 m."""
+    """Lamps at 0.5 to 0.8 m in front of the plane in focus at 4 m."""
     lamps = [_sphere((0.02 * x, 0.05 * np.sin(x), -0.5 - 0.03 * abs(x)), 0.001, 8, 4) for x in range(-8, 9)]
     return Night([_ground(-0.5), *(_sphere((x, 0, -4), 0.4, 32, 16) for x in (-1, 0, 1))], {1e5: lamps}, 5.0, 4.0)
 
 
 def demo() -> Night:
-    """The demo's shot in matt grey, whose lamps and sky have the mean of their channels."""
-    things: list[Mesh] = []
+    """The demo shot with grey diffuse materials; lamps and sky have the mean radiance of their channels."""
+    objects: list[Mesh] = []
     lamps: dict[float, list[Mesh]] = {}
     for part, radiance in demo_triangles():
-        (lamps.setdefault(radiance, []) if radiance > 0 else things).append(part)
+        (lamps.setdefault(radiance, []) if radiance > 0 else objects).append(part)
     camera = rc.Shot.load(DEMO.with_suffix(".toml")).camera
-    return Night(things, lamps, 31.3, camera.lens.focus_distance_m, camera.position, camera.look_at)
+    return Night(objects, lamps, 31.3, camera.lens.focus_distance_m, camera.position, camera.look_at)
 
 
 SCENES: dict[str, Callable[[], Night]] = {
@@ -104,7 +105,8 @@ SCENES: dict[str, Callable[[], Night]] = {
 
 
 def programs_of(night: Night, threads: int) -> dict[str, Program]:
-    parts = {0.0: _joined(night.things)} | {radiance: _joined(lamps) for radiance, lamps in night.lamps.items()}
+    """realcam with and without light tracing, and Mitsuba, by name."""
+    parts = {0.0: _joined(night.objects)} | {radiance: _joined(lamps) for radiance, lamps in night.lamps.items()}
     scene = rc.Scene.from_arrays(
         *_joined(list(parts.values())),
         triangle_materials=np.repeat(range(len(parts)), [len(faces) for _, faces in parts.values()]),
@@ -119,24 +121,24 @@ def programs_of(night: Night, threads: int) -> dict[str, Program]:
     camera = rc.Camera(lens, film=FILM, position=night.position, look_at=night.look_at, exposure_time_s=1)
 
     def ours(tracing: str) -> Program:
-        def take(spp: int, seed: int) -> np.ndarray:
+        def render(spp: int, seed: int) -> np.ndarray:
             image = rc.render(scene, camera, effects=(), spp=spp, seed=seed, max_bounces=0, device="cpu",
                               threads=threads, light_tracing=tracing)  # fmt: skip
             return image.pixels.mean(axis=2)
 
-        return Program(take)
+        return Program(render)
 
     theirs = mitsuba_program(peer, lambda spp: load_lens_sensor(camera, "multijitter", spp), PATH, 1.0)
     return {"realcam": ours("weighted"), "realcam, samples of pixels alone": ours("off"), "mitsuba": theirs}
 
 
-def seconds_to(wanted: float, rows: list[Result]) -> float:
-    """CPU seconds to a relative mean square error, by the power law through the two counts next to it."""
+def seconds_to(goal: float, rows: list[Result]) -> float:
+    """CPU seconds to a relative mean square error, by the power law through the neighbouring sample counts."""
     log = [(np.log(row["cpu_seconds"]), np.log(row["relative_mse"])) for row in rows]
     for (t0, e0), (t1, e1) in itertools.pairwise(log):
-        if e1 <= np.log(wanted) or (t1, e1) == log[-1]:
-            return float(np.exp(t0 + (np.log(wanted) - e0) * (t1 - t0) / (e1 - e0)))
-    raise ValueError("one count of samples tells nothing")
+        if e1 <= np.log(goal) or (t1, e1) == log[-1]:
+            return float(np.exp(t0 + (np.log(goal) - e0) * (t1 - t0) / (e1 - e0)))
+    raise ValueError("at least two sample counts are required")
 
 
 def main() -> None:
@@ -146,20 +148,21 @@ def main() -> None:
     arguments = parser.parse_args()
     dr.set_thread_count(arguments.threads)
     record: Result = {"machine": machine(), "threads": arguments.threads, "mitsuba": mi.__version__, "scenes": {}}
-    pieces = max(1, arguments.reference_spp // 1024)  # of Mitsuba's memory
-    for name, make in SCENES.items():
+    passes = max(1, arguments.reference_spp // 1024)  # of 1024 samples, to limit Mitsuba's memory
+    for scene_name, make in SCENES.items():
         programs = programs_of(make(), arguments.threads)
-        ours = programs["realcam"].take(arguments.reference_spp, 1000)
-        theirs = np.mean([programs["mitsuba"].take(1024, 1000 + k) for k in range(pieces)], 0)
+        ours = programs["realcam"].render(arguments.reference_spp, 1000)
+        theirs = np.mean([programs["mitsuba"].render(1024, 1000 + k) for k in range(passes)], 0)
         reference = 0.5 * (ours + theirs)
         scale = reference**2 + (0.01 * reference.mean()) ** 2
         counts = {"realcam": [4, 16, 64], "realcam, samples of pixels alone": [64, 256], "mitsuba": [64, 256, 1024]}
         rows = {
-            of: [error_at(program, spp, reference, scale) for spp in counts[of]] for of, program in programs.items()
+            name: [error_at(program, spp, reference, scale) for spp in counts[name]]
+            for name, program in programs.items()
         }
-        record["scenes"][name] = {
+        record["scenes"][scene_name] = {
             "difference_of_means": float(f"{ours.mean() / theirs.mean() - 1:.3g}"),
-            "cpu_seconds_to_0.01": {of: float(f"{seconds_to(WANTED, found):.3g}") for of, found in rows.items()},
+            "cpu_seconds_to_0.01": {who: float(f"{seconds_to(GOAL, points):.3g}") for who, points in rows.items()},
             "programs": rows,
         }
     print(json.dumps(record, indent=1))

@@ -1,14 +1,14 @@
-"""Is the planner right, and what does it save? Drawn shots with everything, without each effect, and as planned.
+"""Study of the planner: random shots with all effects, without each effect, and as planned.
 
-    python benchmarks/plan_study.py [--device cpu] [--shots 36] [--seed 1] [--spp 1024]  # one device's figures
-    python benchmarks/plan_study.py --page  # docs/generated/plan-study.md from the figures of all devices
+    python benchmarks/plan_study.py [--device cpu] [--shots 36] [--seed 1] [--spp 1024]  # results of one device
+    python benchmarks/plan_study.py --page  # docs/generated/plan-study.md from the results of all devices
 
-An effect is measured by leaving it out of a picture that has all, a camera model against the next better one without
-effects. A decision is too noisy to tell where the threshold lies within four standard deviations of what is measured.
-The oracle knows what was measured: it keeps what reaches its threshold and takes the cheapest camera model that the
-measurements allow.
-Times are those of the samples, without the preparation of scene and lens, of the same number of samples of everything
-and of what is planned. What samples by tile save besides: tile_samples.py.
+The size of an effect is measured by omitting it from a picture that has all effects; that of a camera model by
+comparing it with the next better one without effects. A decision is "too noisy to tell" if the threshold lies within
+four standard deviations of the measurement. The oracle decides by the measured sizes: it keeps the effects that reach
+their thresholds and uses the cheapest camera model that the measurements allow.
+Times are those of the samples, without the preparation of scene and lens, for equal numbers of samples. tile_samples.py
+measures what sample counts by tile save.
 """
 
 from __future__ import annotations
@@ -27,12 +27,13 @@ import numpy as np
 import realcam as rc
 from machine import machine
 from picture_changes import Comparison, Picture, Size, added_codes, square_means, values
-from plan_shots import Shot, drawn_shot
+from plan_shots import Shot, random_shot
 from srgb import srgb_codes
 from tile_samples import seconds_of
 
 EFFECTS = ("dispersion", "coatings", "ghosts", "diffraction")
-MODELS = {  # without, with
+# Effects that a camera model has: the models without and with the effect.
+MODELS = {
     "defocus": ("pinhole", "thin"),
     "distortion": ("thin", "mapped"),
     "vignetting": ("thin", "mapped"),
@@ -46,12 +47,14 @@ PAGE = ROOT / "docs" / "generated" / "plan-study.md"
 
 @dataclass
 class Decision:
+    """The planner's decision on an effect, and its measured size. The names are keys of the files of results."""
+
     effect: str
-    unit: str
+    unit: str  # "px" or "codes"
     threshold: float
-    foreseen: float
+    foreseen: float  # size that the planner estimated
     measured: float
-    measured_at_least: float
+    measured_at_least: float  # bounds of the measured size
     measured_at_most: float
     is_kept: bool
 
@@ -61,7 +64,8 @@ class Decision:
 
     @property
     def verdict(self) -> str:
-        """What comes along with a camera model that something else calls for is neither."""
+        """ "right", "false drop", "false keep" or NOISY. An effect that is kept only because another one requires the
+        camera model is no false keep."""
         if self.measured_at_least < self.threshold <= self.measured_at_most:
             return NOISY
         if self.is_needed:
@@ -71,7 +75,11 @@ class Decision:
 
 @dataclass
 class Outcome:
-    """Of one shot. Errors are those of the planned picture against that with everything."""
+    """Results of one shot. flip and rms: errors of the planned picture against the one with all effects.
+
+    everything_s, planned_s, oracle_s: render times with all effects, as planned, and as decided by the oracle.
+    flip_noise, rms_noise: the same errors of a picture with all effects and another seed.
+    """
 
     shot: str
     decisions: list[Decision]
@@ -87,17 +95,17 @@ class Outcome:
 
 
 class Darkroom:
-    """Takes pictures of one shot, each once."""
+    """Renders pictures of one shot, each once. Effects are specifications as in shot files."""
 
     def __init__(self, shot: Shot, device: str, spp: int) -> None:
         self.shot, self.device, self.spp = shot, device, spp
-        self.taken: dict[tuple[object, ...], rc.Image] = {}
+        self.rendered: dict[tuple[object, ...], rc.Image] = {}
 
     def image(self, effects: Iterable[str], model: str = "full", seed: int = 1) -> rc.Image:
         key = (frozenset(effects), model, seed)
-        if key not in self.taken:
-            self.taken[key] = self.fresh(effects, model, seed, spp=self.spp)
-        return self.taken[key]
+        if key not in self.rendered:
+            self.rendered[key] = self.fresh(effects, model, seed, spp=self.spp)
+        return self.rendered[key]
 
     def fresh(self, effects: Iterable[str], model: str, seed: int, **samples: object) -> rc.Image:
         camera = self.shot.camera.replace(model=model)
@@ -106,15 +114,16 @@ class Darkroom:
     def values(self, effects: Iterable[str], model: str = "full", seed: int = 1) -> Picture:
         try:
             return values(self.image(effects, model, seed))
-        except rc.InputError:  # the lens sees more than that model can
+        except rc.InputError:  # the field of view is too wide for this model
             return np.zeros_like(values(self.image((), "full", seed)))
 
     def sharp(self) -> Picture | None:
-        """Of a pinhole; None where the lens sees more than one can."""
+        """Picture of a pinhole camera; None if the field of view is too wide for a pinhole."""
         picture = self.values((), "pinhole")
         return picture if picture.any() else None
 
-    def of_even_sky(self) -> Darkroom:
+    def of_uniform_environment(self) -> Darkroom:
+        """Pictures of a uniform environment with the same camera."""
         corner = [(0.0, 0.0, 1.0), (1e-3, 0.0, 1.0), (0.0, 1e-3, 1.0)]  # behind the camera
         scene = rc.Scene.from_arrays(corner, [(0, 1, 2)]).with_environment(1)
         return Darkroom(Shot("sky", scene, self.shot.camera), self.device, 256)
@@ -132,8 +141,11 @@ def size_of(
     noise: tuple[Picture, Picture],
     sharp: Picture | None = None,
 ) -> Size:
-    """sharp: of a pinhole. Light and distortion change slowly over a picture, and their noise is small: smaller parts
-    show more of the corners."""
+    """Measures the size of an effect in its unit.
+
+    before, after: pictures without and with the effect. detail, noise, sharp: as for Comparison. Light and distortion
+    vary slowly over a picture and have little noise, so that smaller parts resolve the corners better.
+    """
     if effect == "coatings":
         return Comparison(before, after, detail, noise, parts=(8, 12)).light_codes()
     if unit == "codes":
@@ -147,8 +159,11 @@ def size_of(
 
 
 def vignetting_codes(room: Darkroom, plain: Picture) -> Size:
-    """What the two models make of an even sky, at the brightness of the picture: nothing else changes there."""
-    sky = room.of_even_sky()
+    """Size of the vignetting: difference of both models in a uniform environment, at the brightness of the picture.
+
+    plain: the picture without effects.
+    """
+    sky = room.of_uniform_environment()
     without, with_it = (square_means(sky.values((), model)) for model in MODELS["vignetting"])
     light = square_means(plain)
     codes = np.abs(srgb_codes(light * without / np.maximum(with_it, 1e-12)) - srgb_codes(light)).max(axis=2)
@@ -156,7 +171,10 @@ def vignetting_codes(room: Darkroom, plain: Picture) -> Size:
 
 
 def measured(effect: str, unit: str, room: Darkroom, everything: frozenset[str]) -> Size | None:
-    """By leaving it out; None where there is no such effect in pictures."""
+    """Measures an effect by omitting it; None if it cannot be measured in pictures.
+
+    everything: all effects.
+    """
     detail, full, plain = room.values((), seed=3), room.values(everything), room.values(())
     plain_noise = (plain, room.values((), seed=2))
     if effect == "vignetting":
@@ -169,18 +187,19 @@ def measured(effect: str, unit: str, room: Darkroom, everything: frozenset[str])
     if effect not in EFFECTS:
         return None
     if effect == "dispersion" and unit == "codes":
-        # The coatings' colour: diffraction has wavelengths, too, and would bring it in its place.
+        # In codes, the size is that of the coatings' colour, which diffraction, as a spectral effect, would show as
+        # well.
         everything -= {"diffraction"}
         full = room.values(everything)
     noise = (full, room.values(everything, seed=2))
     sharp = room.sharp() if effect == "dispersion" and unit == "px" else None
-    left_out = size_of(effect, unit, room.values(everything - {effect}), full, detail, noise, sharp)
+    omitted = size_of(effect, unit, room.values(everything - {effect}), full, detail, noise, sharp)
     if unit == "codes":
-        return left_out
-    # The noise of the other effects hides the sizes of blurs: where they are alone they show better.
+        return omitted
+    # The noise of the other effects can hide a blur: a picture with this effect alone may measure it more precisely.
     with_it = room.values({effect})
     alone = size_of(effect, unit, plain, with_it, detail, (with_it, room.values({effect}, seed=2)), sharp)
-    return min(left_out, alone, key=lambda size: size.at_most - size.at_least)
+    return min(omitted, alone, key=lambda size: size.at_most - size.at_least)
 
 
 def decisions_of(plan: rc.Plan, room: Darkroom, everything: frozenset[str]) -> list[Decision]:
@@ -198,7 +217,7 @@ def decisions_of(plan: rc.Plan, room: Darkroom, everything: frozenset[str]) -> l
 
 
 def oracle_of(decisions: list[Decision], moves: bool) -> tuple[frozenset[str], str]:
-    """Effects and the camera model."""
+    """Effects and camera model that the measured sizes require. moves: True if the shot has motion blur."""
     needed = {decision.effect for decision in decisions if decision.is_needed}
     effects = needed & set(EFFECTS)
     if moves and "motion_blur" not in needed:
@@ -211,15 +230,18 @@ def oracle_of(decisions: list[Decision], moves: bool) -> tuple[frozenset[str], s
 
 
 def flip(a: Picture, b: Picture) -> float:
+    """Mean FLIP error (Andersson et al. 2020) of two linear pictures."""
     pictures = [(srgb_codes(picture) / 255).astype(np.float32) for picture in (a, b)]
     return float(flip_evaluator.evaluate(*pictures, "LDR")[1])
 
 
 def rms_of_white(a: Picture, b: Picture) -> float:
+    """RMS difference as a fraction of white."""
     return float(np.sqrt(np.mean((a - b) ** 2)))
 
 
 def outcome_of(shot: Shot, device: str, spp: int) -> Outcome:
+    """Plans a shot, and measures the plan."""
     room = Darkroom(shot, device, spp)
     everything = frozenset(EFFECTS)
     rc.plan(shot.scene, shot.camera, device=device)
@@ -245,6 +267,7 @@ def outcome_of(shot: Shot, device: str, spp: int) -> Outcome:
 
 
 def summary(outcomes: list[Outcome]) -> list[str]:
+    """Markdown list of the results over all shots."""
     every = [d for outcome in outcomes for d in outcome.decisions]
     decisions = [d for d in every if d.verdict != NOISY]
     wrong = [d for d in decisions if d.verdict != "right"]
@@ -272,6 +295,7 @@ def summary(outcomes: list[Outcome]) -> list[str]:
 
 
 def write_page() -> None:
+    """Writes PAGE from the files of results."""
     lines = [
         "# Is the planner right?",
         "",
@@ -302,7 +326,7 @@ def write_page() -> None:
 
 
 def gpu_name() -> str:
-    """As the list of devices has it."""
+    """Description of the first GPU, as in rc.devices()."""
     return next(device.description for device in rc.devices() if device.name.startswith("cuda"))
 
 
@@ -317,17 +341,17 @@ def main() -> None:
     parser.add_argument("--shots", type=int, default=36)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--spp", type=int, default=1024)
-    parser.add_argument("--output", type=Path, help="of the figures: a file for benchmarks/results")
+    parser.add_argument("--output", type=Path, help="file for the results, for benchmarks/results")
     parser.add_argument("--page", action="store_true", help="only write the page")
-    words = parser.parse_args()
-    if words.page:
+    arguments = parser.parse_args()
+    if arguments.page:
         return write_page()
     warnings.simplefilter("ignore", UserWarning)
     outcomes: list[Outcome] = []
-    device = machine()["processor"] if words.device == "cpu" else gpu_name()
-    where = f"{device}, {words.spp} samples, shots of seed {words.seed}"
-    for number in range(words.shots):
-        outcome = outcome_of(drawn_shot(number, words.seed), words.device, words.spp)
+    device = machine()["processor"] if arguments.device == "cpu" else gpu_name()
+    where = f"{device}, {arguments.spp} samples, shots of seed {arguments.seed}"
+    for number in range(arguments.shots):
+        outcome = outcome_of(random_shot(number, arguments.seed), arguments.device, arguments.spp)
         outcomes.append(outcome)
         print(f"{outcome.shot}: {outcome.planned}; {outcome.planned_s:.2f} of {outcome.everything_s:.2f} s", flush=True)
         for d in outcome.decisions:
@@ -335,8 +359,8 @@ def main() -> None:
                 between = f"{d.measured_at_least:.2g} to {d.measured_at_most:.2g}"
                 sizes = f"foreseen {d.foreseen:.3g}, measured {d.measured:.3g} ({between}) {d.unit}"
                 print(f"    {d.verdict}: {d.effect} {sizes}", flush=True)
-        if words.output:
-            write_record(words.output, where, outcomes)
+        if arguments.output:
+            write_record(arguments.output, where, outcomes)
     print("\n" + "\n".join(summary(outcomes)))
 
 

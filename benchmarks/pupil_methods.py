@@ -1,10 +1,10 @@
-"""What does it save to send rays where a lens lets them pass? For every bundled lens, at equal error.
+"""Efficiency of pupil sampling for every bundled lens: time of the fitted pupil outline over other methods.
 
     python benchmarks/pupil_methods.py [--device cpu] [--size 96] [--max-spp 64]
 
-The time of the fitted outline over that of each other way to sample the pupil, to the error that the outline has with
-the most samples: random points all over the rear element (Kolb et al. 1995), the same stratified, the paraxial exit
-pupil, and what each pixel has learnt. "never": light is lost, so that the error stays larger.
+Prints, for each other method, its render time over that of the outline, to the error that the outline has with the most
+samples. The methods are random points on the rear element (Kolb et al. 1995), stratified ones, the paraxial exit pupil,
+and distributions learnt by each pixel. "never": the method loses light, so that its error remains larger.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def main() -> None:
     parser.add_argument("--size", type=int, default=96)
     parser.add_argument("--max-spp", type=int, default=64)
     parser.add_argument("--reference-spp", type=int, default=2048)
-    words = parser.parse_args()
+    arguments = parser.parse_args()
     warnings.simplefilter("ignore", UserWarning)
     for number, name in enumerate(rc.lens_names()):
         lens = rc.Lens.load(name)
@@ -32,10 +32,10 @@ def main() -> None:
         cost = rc.accuracy_cost(
             scene,
             camera,
-            device=words.device,
-            size=words.size,
-            max_spp=words.max_spp,
-            reference_spp=words.reference_spp,
+            device=arguments.device,
+            size=arguments.size,
+            max_spp=arguments.max_spp,
+            reference_spp=arguments.reference_spp,
             effects=(),
             levels=False,
         )
@@ -44,8 +44,8 @@ def main() -> None:
             print("| lens | " + " | ".join(heads) + " |\n|---" + "|---" * len(heads) + "|")
         ours = cost.samplings[-1]
         goal = ours.pictures[-1].rmse
-        found = {rung.name: rung.seconds_to(goal) / ours.seconds_to(goal) for rung in cost.samplings[:-1]}
-        cells = ["never" if math.isinf(ratio) else f"{ratio:.2f}" for ratio in found.values()]
+        ratios = {rung.name: rung.seconds_to(goal) / ours.seconds_to(goal) for rung in cost.samplings[:-1]}
+        cells = ["never" if math.isinf(ratio) else f"{ratio:.2f}" for ratio in ratios.values()]
         impossible = f" (not {', '.join(cost.impossible)})" if cost.impossible else ""
         print(f"| {name}{impossible} | " + " | ".join(cells) + " |", flush=True)
 

@@ -1,8 +1,8 @@
-"""What a user of the lens bench sees in the browser: frames of the picture a second, and how a drawing follows a drag.
+"""Frame rate of the lens bench in the browser: of the picture, and of the lens drawing during a drag.
 
     python benchmarks/viewer_browser_speed.py [--shot SHOT] [--size 1400 1000]
 
-Wants playwright and Debian's chromium, which draws on the same cores as the server: no GPU helps it.
+Needs playwright and Debian's chromium, which draws on the cores of the server, without a GPU.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ from playwright.sync_api import Page, sync_playwright
 from realcam.cli.demo import scenes_folder
 from viewer_speed import free_port
 
-SECONDS = 6.0
+SECONDS = 6.0  # duration of a drag
 
-# The mouse moves in the page itself, with each picture that the browser draws: as smooth as a hand at 60 Hz, and no
-# process beside it has to keep pace.
+# JavaScript that moves the mouse in each animation frame of the page, as smoothly as a hand at 60 Hz, without another
+# process. Its arguments: CSS selector of the dragged element, duration in s, and amplitudes of the movement in pixels.
+# Returns rates per second.
 MOVE = """([selector, seconds, dx, dy]) => new Promise((done) => {
   const target = document.querySelector(selector), box = target.getBoundingClientRect();
   const x0 = box.left + box.width / 2, y0 = box.top + box.height / 2;
@@ -60,6 +61,7 @@ MOVE = """([selector, seconds, dx, dy]) => new Promise((done) => {
 
 
 def measure(page: Page) -> dict[str, Any]:
+    """Rates while the camera orbits, and while a surface of the lens is dragged."""
     page.locator("canvas.rc-canvas").wait_for()
     page.wait_for_function("[...window.realcamStreams?.values() ?? []][0]?.framesShown > 3")
     time.sleep(3)
@@ -73,7 +75,9 @@ def measure(page: Page) -> dict[str, Any]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--shot", type=Path, default=scenes_folder() / "demo.toml")
-    parser.add_argument("--size", type=int, nargs=2, default=(1400, 1000), help="of the window, in pixels")
+    parser.add_argument(
+        "--size", type=int, nargs=2, default=(1400, 1000), help="size of the browser's window in pixels"
+    )
     options = parser.parse_args()
     port = free_port()
     command = [sys.executable, "-m", "realcam", "view", str(options.shot), "--no-browser", "--port", str(port)]

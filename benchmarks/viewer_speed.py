@@ -1,9 +1,9 @@
-"""How quickly the lens bench answers: frames a second while the camera moves, and from a control to the first frame.
+"""Response of the lens bench: frames per second while the camera moves, and latency from a control to its first frame.
 
     python benchmarks/viewer_speed.py [--device cpu] [--shot SHOT] [--resolution 640 640] [--idle] [-o out.json]
 
-A process serves a bench over its WebSocket, and this one speaks to it as a page does: everything but the browser is
-measured, the renderer, JPEG and the socket.
+A child process serves a bench over its WebSocket, and this process communicates with it as the page does: renderer,
+JPEG encoder and socket are measured, but not the browser.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ from starlette.routing import WebSocketRoute
 from starlette.websockets import WebSocket
 from websockets.asyncio.client import ClientConnection, connect
 
-MOVING_S = 4.0
-CONTROLS = 40
+MOVING_S = 4.0  # duration of the movement
+CONTROLS = 40  # number of measured changes for each control
 
 
 def free_port() -> int:
@@ -45,7 +45,7 @@ def free_port() -> int:
 
 
 class Page:
-    """What stream.js does."""
+    """Client side of the stream, as in stream.js."""
 
     def __init__(self, connection: ClientConnection) -> None:
         self.connection = connection
@@ -56,7 +56,7 @@ class Page:
         await self.connection.send(json.dumps(message))
 
     async def frame(self) -> dict[str, Any]:
-        """The next one, acknowledged."""
+        """Receives the next frame, acknowledges it, and returns its header."""
         while True:
             content = await self.connection.recv()
             if isinstance(content, str):
@@ -69,8 +69,8 @@ class Page:
             return header
 
 
-async def frames_a_second(page: Page) -> dict[str, float]:
-    """The camera goes around: a mouse moves 120 times a second, whenever frames come."""
+async def frames_per_second(page: Page) -> dict[str, float]:
+    """Frame rate while the camera orbits by 120 mouse movements per second."""
 
     async def drag() -> None:
         for k in range(100_000):
@@ -90,12 +90,15 @@ async def frames_a_second(page: Page) -> dict[str, float]:
 
 
 async def latencies(page: Page, message: Any) -> dict[str, float]:
-    """From a control to the first frame that shows it, while the picture refines."""
+    """Latency from a control to the first frame that shows its effect, while the picture is being refined.
+
+    message: returns the message of the k-th change.
+    """
     times = []
     header = await page.frame()
     for k in range(CONTROLS):
         until = time.perf_counter() + 0.2
-        while time.perf_counter() < until:  # the picture refines, and a control comes in the middle of it
+        while time.perf_counter() < until:  # refinement, which the next control interrupts
             try:
                 header = await asyncio.wait_for(page.frame(), max(0.01, until - time.perf_counter()))
             except TimeoutError:
@@ -110,17 +113,19 @@ async def latencies(page: Page, message: Any) -> dict[str, float]:
 
 
 def cpu_seconds(process: int) -> float:
+    """CPU time of a process, by its id."""
     fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 async def measure(port: int, process: int, shows_idle: bool) -> dict[str, Any]:
+    """Measures the server at a port. process: its id. shows_idle: measures its CPU load at rest as well."""
     results: dict[str, Any] = {}
     async with connect(f"ws://127.0.0.1:{port}/", max_size=None) as connection:
         page = Page(connection)
         for _ in range(3):
             await page.frame()
-        results["moving"] = await frames_a_second(page)
+        results["moving"] = await frames_per_second(page)
         results["orbit"] = await latencies(page, lambda k: {"type": "orbit", "x": 0.01 if k % 2 else -0.01, "y": 0})
         for ring in ("aperture", "shutter"):
             results[ring] = await latencies(
@@ -141,7 +146,7 @@ async def measure(port: int, process: int, shows_idle: bool) -> dict[str, Any]:
 
 
 def serve(shot: Shot, device: str, port: int) -> None:
-    """The bench and its socket, without the page."""
+    """Serves a bench's WebSocket without its page."""
 
     async def stream(socket: WebSocket) -> None:
         window = Window(LensBench(shot, device=device))
@@ -151,7 +156,7 @@ def serve(shot: Shot, device: str, port: int) -> None:
 
 
 def shot_of(path: Path | None) -> Shot:
-    """A shot file, or a pickle of one for a machine without what reads its scene."""
+    """Loads a shot file, or a pickled Shot for machines that cannot read its scene; None: the demo shot."""
     if path is None:
         path = scenes_folder() / "demo.toml"
     if path.suffix == ".pickle":
@@ -163,9 +168,11 @@ def shot_of(path: Path | None) -> Shot:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--device", default="auto")
-    parser.add_argument("--shot", type=Path, help="shot file, or a pickled Shot; the demo if left out")
-    parser.add_argument("--resolution", type=int, nargs=2, help="pixels across and down, of a film as wide as it was")
-    parser.add_argument("--plain", action="store_true", help="without effects, instead of those that are planned")
+    parser.add_argument("--shot", type=Path, help="shot file, or a pickled Shot [the demo]")
+    parser.add_argument(
+        "--resolution", type=int, nargs=2, help="width and height of the picture in pixels; the film keeps its width"
+    )
+    parser.add_argument("--plain", action="store_true", help="render without effects instead of the planned ones")
     parser.add_argument("--idle", action="store_true", help="wait until the picture is done, and measure the idle CPU")
     parser.add_argument("--serve", type=int, help=argparse.SUPPRESS)
     parser.add_argument("-o", "--output", type=Path)

@@ -15,6 +15,7 @@ IMAGE = Path(__file__).resolve().parents[1] / "docs" / "images" / "analysis.png"
 
 
 def main(target: Path) -> None:
+    """Writes the figure."""
     analysis = rc.analysis
     wide_open = rc.Lens.load("double-gauss-50mm")
     lens = wide_open.stopped_down(4)

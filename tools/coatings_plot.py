@@ -1,4 +1,4 @@
-"""The plot of docs/coatings.md: reflectance of bare, single-layer and three-layer glass over wavelength and angle."""
+"""Draws the plot of docs/coatings.md: reflectance of uncoated, single-layer and three-layer coated glass."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import matplotlib.figure
 import numpy as np
 import realcam as rc
 
-GLASS = 1.5168
+GLASS = 1.5168  # refractive index
 DESIGN_NM = 550.0
 
 
 def coatings() -> dict[str, tuple[rc.Coating, str]]:
-    """By what the legend calls them, each with its colour."""
+    """Returns coatings with their colours, by the text of the legend."""
 
     def layer(index: float, waves: float) -> rc.CoatingLayer:
         return rc.CoatingLayer(index, thickness_waves=waves, design_wavelength_nm=DESIGN_NM)
@@ -29,7 +29,8 @@ def coatings() -> dict[str, tuple[rc.Coating, str]]:
 
 
 def save_plot(path: Path) -> None:
-    """Two panels: over wavelength at normal incidence, and over angle at the design wavelength, s, p and their mean."""
+    """Plots reflectance over wavelength at normal incidence, and over the angle of incidence at the design wavelength
+    for s and p polarisation and their mean."""
     figure = matplotlib.figure.Figure(figsize=(10, 4), layout="constrained")
     over_wavelength, over_angle = figure.subplots(1, 2)
     wavelengths, angles = np.linspace(380, 780, 401), np.linspace(0, 89, 357)

@@ -1,4 +1,4 @@
-"""The pictures of docs/datasets.md, dual-pixels.md, rigs.md and many-machines.md.
+"""Renders the pictures of docs/datasets.md, dual-pixels.md, rigs.md and many-machines.md.
 
     python tools/data_pictures.py FOLDER
 
@@ -21,18 +21,19 @@ from PIL import Image, ImageDraw
 from realcam import dataset
 
 SCENE = Path(__file__).resolve().parent.parent / "scenes" / "demo.glb"
-SIZE = (330, 220)
-TILE = 55
+SIZE = (330, 220)  # of the demo pictures, pixels
+TILE = 55  # side of the tiles of divided(), pixels
 
 
 def save(path: Path, *pictures: np.ndarray) -> None:
-    """(H, W, 3) uint8, side by side."""
+    """Writes pictures (H, W, 3) uint8 side by side."""
     gap = np.full((len(pictures[0]), 6, 3), 255, np.uint8)
     parts = [part for picture in pictures for part in (gap, picture)][1:]
     Image.fromarray(np.concatenate(parts, axis=1)).save(path, quality=88)
 
 
 def demo() -> tuple[rc.Scene, rc.Camera]:
+    """The demo scene at dusk, and a camera with a fast lens."""
     scene = rc.Scene.load(SCENE).with_environment((20.0, 28.0, 46.0))
     camera = rc.Camera(
         rc.Lens.load("fast-50mm").focused(0.9),
@@ -45,7 +46,7 @@ def demo() -> tuple[rc.Scene, rc.Camera]:
 
 
 def labelled() -> list[np.ndarray]:
-    """A picture with its boxes, depth, mask and flow."""
+    """A picture of a data set with bounding boxes, and its depth, mask and optical flow as colours."""
     size = (240, 180)
     recipe = dataset.Recipe(count=1, size=size, lenses=("double-gauss-50mm",), speed_m_s=(1, 2), spp=128, seed=3)
     recipe = dataclasses.replace(recipe, labels=("depth", "mask", "flow"))
@@ -53,23 +54,23 @@ def labelled() -> list[np.ndarray]:
         dataset.make(recipe, folder)
         sample = next(dataset.samples(folder))
     boxed = Image.fromarray(sample["png"])
-    for seen in sample["json"]["objects"]:
-        column, row, width, height = seen["box"]
+    for visible in sample["json"]["objects"]:
+        column, row, width, height = visible["box"]
         ImageDraw.Draw(boxed).rectangle((column, row, column + width - 1, row + height - 1), outline=(255, 210, 0))
-    near = 1 / sample["depth.npy"]
-    depth = colormaps["viridis"](near / near.max())[..., :3]
+    inverse_depth = 1 / sample["depth.npy"]
+    depth = colormaps["viridis"](inverse_depth / inverse_depth.max())[..., :3]
     mask = colormaps["tab10"](sample["mask.png"])[..., :3]
     across, down = np.moveaxis(np.nan_to_num(sample["flow.npy"]), -1, 0)
     speed = np.hypot(across, down)
-    way = np.arctan2(down, across) / (2 * np.pi) % 1
-    flow = hsv_to_rgb(np.stack([way, np.minimum(1, speed / np.percentile(speed, 98)), np.ones_like(way)], axis=-1))
+    hue = np.arctan2(down, across) / (2 * np.pi) % 1
+    flow = hsv_to_rgb(np.stack([hue, np.minimum(1, speed / np.percentile(speed, 98)), np.ones_like(hue)], axis=-1))
     return [np.asarray(boxed), *(np.uint8(255 * each) for each in (depth, mask, flow))]
 
 
 def halves() -> list[np.ndarray]:
-    """Left, right, and the left one in red over the right one in green and blue."""
+    """Pictures of the left and the right half pixels, and their anaglyph: left in red, right in green and blue."""
     image = rc.render(*demo(), effects=(), spp=256, layers=["dual_pixel_left", "dual_pixel_right"])
-    # Each half has half of the light.
+    # Each half pixel receives half of the light.
     left, right = (
         np.asarray(dataclasses.replace(image, pixels=2 * image.layers[f"dual_pixel_{side}"]).developed())
         for side in ("left", "right")
@@ -78,6 +79,7 @@ def halves() -> list[np.ndarray]:
 
 
 def stereo() -> list[np.ndarray]:
+    """Left and right picture of a stereo rig."""
     scene, camera = demo()
     camera = camera.replace(lens=camera.lens.stopped_down(8), exposure_time_s=0.4)
     pictures = rc.Rig.stereo(camera, baseline_m=0.12).render(scene, spp=96, effects=())
@@ -85,13 +87,15 @@ def stereo() -> list[np.ndarray]:
 
 
 def divided() -> list[np.ndarray]:
-    """A picture of which half of the tiles are there, and the whole one."""
+    """A picture with half of its tiles, and the complete one with traced light."""
     session = rc.Session(*demo(), spp=96, effects=())
     tiles = list(product(range(0, SIZE[1], TILE), range(0, SIZE[0], TILE)))
     parts = [session.expose((column, row, TILE, TILE), 0, 96) for row, column in tiles]
     np.random.default_rng(1).shuffle(parts)
-    lamps = session.expose_traced_light(0, 96)
-    return [np.asarray(session.image_of(some).developed()) for some in (parts[: len(parts) // 2], [*parts, lamps])]
+    traced_light = session.expose_traced_light(0, 96)
+    return [
+        np.asarray(session.image_of(some).developed()) for some in (parts[: len(parts) // 2], [*parts, traced_light])
+    ]
 
 
 def main(folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""The picture of docs/diffraction.md: three lamps before a board at f/16, without and with diffraction."""
+"""Renders the picture of docs/diffraction.md: three lamps in front of a board at f/16, without and with diffraction."""
 
 from __future__ import annotations
 
@@ -9,23 +9,24 @@ import matplotlib.image
 import numpy as np
 import realcam as rc
 
-SIDE = 420
+SIDE = 420  # of each picture, pixels
 
 
-def quad(middle: tuple[float, float, float], half_width: float, half_height: float) -> np.ndarray:
-    x, y, z = middle
+def quad(centre: tuple[float, float, float], half_width: float, half_height: float) -> np.ndarray:
+    """(4, 3): corners of a rectangle that faces +z, metres."""
+    x, y, z = centre
     return np.array(
         [[x + i * half_width, y + j * half_height, z] for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))], float
     )
 
 
 def night() -> rc.Scene:
-    """A dim striped board, three small lamps before it, each of another colour."""
+    """A dim checkerboard and three small lamps of different colours in front of it."""
     board = np.indices((64, 64)).sum(axis=0) % 2 * 180 + 40
     texture = np.repeat(board[:, :, None], 4, axis=2).astype(np.uint8)
     texture[:, :, 3] = 255
     lamps = [((-0.9, 0.5, -4.9), (1.0, 0.8, 0.5)), ((0.0, -0.35, -4.9), (0.6, 0.8, 1.0)), ((0.9, 0.6, -4.9), (1, 1, 1))]
-    corners = [quad((0, 0, -5), 1.6, 1.6)] + [quad(place, 0.004, 0.004) for place, _ in lamps]
+    corners = [quad((0, 0, -5), 1.6, 1.6)] + [quad(centre, 0.004, 0.004) for centre, _ in lamps]
     faces = [[4 * i + a, 4 * i + b, 4 * i + c] for i in range(len(corners)) for a, b, c in ((0, 1, 2), (0, 2, 3))]
     scene = rc.Scene.from_arrays(
         np.concatenate(corners),
@@ -39,6 +40,7 @@ def night() -> rc.Scene:
 
 
 def save_picture(path: Path) -> None:
+    """Writes both pictures side by side."""
     lens = rc.Lens.load("double-gauss-50mm").with_iris(blades=6, rotation_deg=8).stopped_down(16).focused(5.0)
     camera = rc.Camera(lens, film=rc.Film(24, 24, (SIDE, SIDE)), exposure_time_s=1.0, iso=400)
     pictures = [

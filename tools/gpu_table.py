@@ -1,4 +1,4 @@
-"""Writes gpu.md, a table of what gpu.json (and mitsuba.json, if there) say, into their folder."""
+"""Writes gpu.md, a table of the results in gpu.json and, if it exists, mitsuba.json, into their folder."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ from pathlib import Path
 
 
 def rows(results: dict, peer: dict) -> list[tuple[str, str, str]]:
-    """What, figure, and the peer's with the ratio where it was measured."""
+    """Returns name and value of each result, and the peer's value with the ratio, or an empty text.
+
+    results: of realcam bench; peer: of against_mitsuba.py.
+    """
     table: list[tuple[str, str, str]] = []
 
-    def add(what: str, figure: float, unit: str, other: float | None = None) -> None:
-        ratio = f"{other} {unit} ({figure / other:.2f} times)" if other else ""
-        table.append((what, f"{figure} {unit}", ratio))
+    def add(name: str, value: float, unit: str, peer_value: float | None = None) -> None:
+        ratio = f"{peer_value} {unit} ({value / peer_value:.2f} times)" if peer_value else ""
+        table.append((name, f"{value} {unit}", ratio))
 
     for name, r in results["gpu-lens-rays"]["giga_rays_per_second"].items():
         add(f"{name}, {r['surfaces']} surfaces: traced", r["traced"], "G rays/s")
@@ -59,7 +62,7 @@ def main(folder: Path) -> None:
         f"| what | realcam | {peer.get('name', 'peer')} |",
         "|---|---|---|",
     ]
-    lines += [f"| {what} | {figure} | {other} |" for what, figure, other in rows(record["results"], peer)]
+    lines += [f"| {name} | {value} | {peer_value} |" for name, value, peer_value in rows(record["results"], peer)]
     text = "\n".join(lines) + "\n"
     (folder / "gpu.md").write_text(text)
     print(text)

@@ -1,4 +1,4 @@
-"""The drawings of README.md and docs/drawing.md."""
+"""Draws the lens drawings of README.md and docs/drawing.md."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import realcam as rc
 from PIL import Image
 from realcam.drawing import save_cross_section, save_states, states_of
 
-WIDTH = 1000
+WIDTH = 1000  # of the drawings, pixels
 
 
 def save_drawings(folder: Path) -> None:
@@ -31,11 +31,11 @@ def save_drawings(folder: Path) -> None:
     save_states([(lens.title, lens) for lens in pair], folder / "drawing-compare.png", width_px=WIDTH)
     save_cross_section(with_crossing_faces(), folder / "drawing-error.png", rays=0, width_px=WIDTH)
     for picture in (folder / "lens.png", *folder.glob("drawing-*.png")):
-        Image.open(picture).convert("RGB").quantize(64).save(picture, optimize=True)  # a fifth of the size
+        Image.open(picture).convert("RGB").quantize(64).save(picture, optimize=True)  # reduces the file to a fifth
 
 
 def with_crossing_faces() -> rc.Lens:
-    """A triplet whose front element somebody has made too thin."""
+    """A triplet whose front element is so thin that its faces intersect."""
     triplet = rc.Lens.load("cooke-triplet-50mm")
     surfaces = [triplet.surfaces[0].replace(thickness_mm=0.6), *triplet.surfaces[1:]]
     return rc.Lens(surfaces=surfaces, name="too thin", film_distance_mm=triplet.film_distance_mm, allow_overlap=True)

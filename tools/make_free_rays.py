@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write tests/truth/free_rays.json.gz: what Optiland and ray-optics say of tilted, decentred and freeform surfaces.
+"""Write tests/truth/free_rays.json.gz: rays through tilted, decentred and freeform surfaces by Optiland and ray-optics.
 
 pip install -e '.[dev,truth]'
 python tools/make_free_rays.py
@@ -19,7 +19,7 @@ from tests.truth import free_lenses, free_peers
 
 FILE = Path(__file__).resolve().parents[1] / "tests" / "truth" / "free_rays.json.gz"
 RAYS = 24  # through each lens
-HALF_WIDTH_MM, HALF_ANGLE_DEG = 6.0, 6.0
+HALF_WIDTH_MM, HALF_ANGLE_DEG = 6.0, 6.0  # ranges of the rays' origins and directions
 
 
 def main() -> None:
@@ -27,13 +27,13 @@ def main() -> None:
     cases = []
     for seed, (name, rows) in enumerate(free_lenses.all_lenses().items()):
         rays = free_lenses.rays(RAYS, HALF_WIDTH_MM, HALF_ANGLE_DEG, seed)
-        said = {peer: trace(rows, rays) for peer, trace in free_peers.PEERS.items()}
+        traced_by = {peer: trace(rows, rays) for peer, trace in free_peers.PEERS.items()}
         cases.append(
             {
                 "name": name,
                 "rows": free_lenses.to_json(rows),
                 "rays": rays.tolist(),
-                "said": {peer: traced.round(13).tolist() for peer, traced in said.items() if traced is not None},
+                "said": {peer: traced.round(13).tolist() for peer, traced in traced_by.items() if traced is not None},
             }
         )
     text = json.dumps({"versions": versions, "lenses": cases}, separators=(",", ":"))

@@ -1,17 +1,17 @@
-"""Writes cpp/scene/materials/ggx_tables.hpp: how much light GGX microfacets give back after a single reflection.
+"""Writes cpp/scene/materials/ggx_tables.hpp: directional albedo of GGX microfacets with single scattering.
 
     python tools/make_ggx_tables.py
 
-By Gauss-Legendre quadrature over the visible facets (Heitz 2018), so that what is integrated, G2/G1 (E) and G2/G1
-times Schlick's (1 - cos)^5 (B), is smooth. Rows: 32 square roots of alpha, evenly from that of 0.001 to 1.
+Computed by Gauss-Legendre quadrature over the visible facets (Heitz 2018), over which the integrands are smooth: G2/G1
+for E, and G2/G1 times Schlick's (1 - cos)^5 for B. Rows: 32 square roots of alpha, uniformly from that of 0.001 to 1.
 
-E, 48 columns: directions by the cosine they have once the surface is stretched until its facets are those of alpha 1.
-How much of the facets hide each other depends on that cosine alone, so that the dip of E at cosines of about alpha
-stands in the same column in each row, and the rows between two can be had by mixing them. Evenly by its power 2/3, for
-what happens near 0. B / E, 48 columns: square roots of the cosine itself, on which Schlick's term depends.
+E, 48 columns: the cosine of the direction in the space that is stretched so that alpha becomes 1. Masking depends only
+on that cosine, so that the dip of E at cosines close to alpha lies in the same column of all rows, and rows can be
+interpolated. Columns are uniform in its power 2/3, for resolution near 0. B / E, 48 columns: square roots of the
+cosine itself, on which Schlick's term depends.
 
-Averages: over the cosines, weighted by them. Of E what it lacks of 1, over alpha^2, with which it grows on smooth
-surfaces; between the rows it is no straight line.
+Means are cosine-weighted. The mean of E is stored as (1 - E) / alpha^2, because 1 - E grows with alpha^2 on smooth
+surfaces.
 """
 
 from pathlib import Path
@@ -19,20 +19,23 @@ from pathlib import Path
 import numpy as np
 
 ROWS, COLUMNS = 32, 48
-SMOOTHEST = 0.001
-NODES = 96
+SMOOTHEST = 0.001  # alpha of the first row
+NODES = 96  # of the quadrature, along each axis
 
 
 def stretched(cosine: np.ndarray, alpha: float) -> np.ndarray:
+    """Cosine of a direction in the space in which alpha is 1."""
     return cosine / np.sqrt(cosine**2 + alpha**2 * (1 - cosine**2))
 
 
 def unstretched(z: np.ndarray, alpha: float) -> np.ndarray:
+    """Inverse of stretched()."""
     return alpha * z / np.sqrt(1 - z**2 + (alpha * z) ** 2)
 
 
 def visible_facets(w: np.ndarray, alpha: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Facet normals that w sees, as the unit square is mapped on them: spherical caps, Dupuy and Benyoub 2023."""
+    """(3, ...): facet normals visible from the direction w, mapped from the unit square (u, v) by spherical caps (Dupuy
+    and Benyoub 2023)."""
     s = np.array([alpha * w[0], 0.0, w[2]])
     s /= np.linalg.norm(s)
     z = (1 - u) * (1 + s[2]) - s[2]
@@ -43,26 +46,30 @@ def visible_facets(w: np.ndarray, alpha: float, u: np.ndarray, v: np.ndarray) ->
 
 
 def smith_lambda(z: np.ndarray, alpha: float) -> np.ndarray:
+    """Smith's Lambda of GGX for directions of cosine z."""
     return 0.5 * (np.sqrt(1 + alpha * alpha * (1 / (z * z) - 1)) - 1)
 
 
 def albedos(cosine: float, alpha: float) -> tuple[float, float]:
-    """E and B for one direction of view."""
+    """E and B for one direction."""
     cosine = max(cosine, 1e-5 * alpha)
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    u, v = np.meshgrid((nodes + 1) / 2, (nodes + 1) / 4, indexing="ij")  # half of the turn: the rest is its mirror
+    u, v = np.meshgrid(
+        (nodes + 1) / 2, (nodes + 1) / 4, indexing="ij"
+    )  # half of the azimuths, because of mirror symmetry
     weight = np.outer(weights, weights) / 4
     w = np.array([np.sqrt(1 - cosine * cosine), 0.0, cosine])
     h = visible_facets(w, alpha, u, v)
     facing = np.tensordot(w, h, 1)
     out_z = 2 * facing * h[2] - w[2]
     above = out_z > 0
-    mine = smith_lambda(np.asarray(cosine), alpha)
-    shadow = np.where(above, (1 + mine) / (1 + mine + smith_lambda(np.where(above, out_z, 1.0), alpha)), 0.0)
-    return float(np.sum(weight * shadow)), float(np.sum(weight * shadow * (1 - facing) ** 5))
+    own = smith_lambda(np.asarray(cosine), alpha)
+    shadowing = np.where(above, (1 + own) / (1 + own + smith_lambda(np.where(above, out_z, 1.0), alpha)), 0.0)
+    return float(np.sum(weight * shadowing)), float(np.sum(weight * shadowing * (1 - facing) ** 5))
 
 
 def averages(alpha: float) -> tuple[float, float]:
+    """Cosine-weighted means of E and B."""
     nodes, weights = np.polynomial.legendre.leggauss(256)
     roots, weights = (nodes + 1) / 2, weights / 2  # over the cosine's cube root, where E is smoother
     values = np.array([albedos(r**3, alpha) for r in roots])
@@ -71,6 +78,7 @@ def averages(alpha: float) -> tuple[float, float]:
 
 
 def text_of(name: str, values: list[float]) -> str:
+    """A macro with the values, eight in a line."""
     lines = ["    " + ", ".join(f"{v:.6f}f" for v in values[i : i + 8]) + "," for i in range(0, len(values), 8)]
     return f"#define {name} \\\n" + " \\\n".join(lines).rstrip(",") + "\n"
 
@@ -79,8 +87,8 @@ def main() -> None:
     alphas = np.linspace(np.sqrt(SMOOTHEST), 1, ROWS) ** 2
     columns = np.linspace(0, 1, COLUMNS)
     everything = [albedos(unstretched(z, a), a)[0] for a in alphas for z in columns**1.5]
-    # At grazing incidence the ratio is 1, and the quadrature 0 / 0.
-    seen = [albedos(c, a) for a in alphas for c in np.maximum(columns, 1e-3) ** 2]
+    # At grazing incidence the ratio B / E is 1, but the quadrature gives 0 / 0.
+    pairs = [albedos(c, a) for a in alphas for c in np.maximum(columns, 1e-3) ** 2]
     means = [averages(a) for a in alphas]
     Path("cpp/scene/materials/ggx_tables.hpp").write_text(
         "#pragma once\n"
@@ -95,7 +103,7 @@ def main() -> None:
         f"#define REALCAM_GGX_ROWS {ROWS}\n#define REALCAM_GGX_COLUMNS {COLUMNS}\n\n"
         + text_of("REALCAM_GGX_ALBEDO", everything)
         + "\n"
-        + text_of("REALCAM_GGX_SCHLICK", [b / e for e, b in seen])
+        + text_of("REALCAM_GGX_SCHLICK", [b / e for e, b in pairs])
         + "\n"
         + text_of("REALCAM_GGX_MEAN_LOSS", [(1 - e) / a**2 for (e, _), a in zip(means, alphas, strict=True)])
         + "\n"

@@ -5,20 +5,20 @@
     python tools/make_glass_catalogue.py [--opticalglass DIR] [--agf schott=FILE] [--agf hoya=FILE] > lenses/glass.toml
     python tools/make_glass_catalogue.py --extend DIR      # changes lenses/glass.toml
 
-`opticalglass` (BSD) carries the makers' own data sheets. DIR is the folder it is installed in, if
-that is not on the path. An AGF file, the catalogue format in which makers publish for lens-design
-programs, adds the glasses that a maker no longer lists; where both have a name, the data sheet wins.
+The package `opticalglass` (BSD) contains the makers' data sheets. DIR is the folder in which it is
+installed, if that is not on the path. An AGF file, the catalogue format of lens-design programs, adds
+the glasses that a maker no longer lists; the data sheet has precedence.
 
-`--extend` adds to the file what it lacks: the materials of OTHERS, and glasses of DIR, the folder
+`--extend` adds missing materials to the file: those of OTHERS, and the glasses of DIR, the folder
 data-nk/glass of the refractiveindex.info database (public domain), which has the makers' AGF
-catalogues of 2017 and later. It is in the wheel of `optiland`, as optiland/database/data-nk/glass.
-A glass whose name another maker has too is left out, so that no name of a lens file gets a second
-meaning.
+catalogues of 2017 and later. The wheel of `optiland` contains it as optiland/database/data-nk/glass.
+A glass is omitted if another maker has one of the same name, so that names in lens files remain
+unambiguous.
 
-Schott and Ohara publish the Sellmeier formula, whose coefficients are copied. Hoya, CDGM, Hikari and
-Sumita publish n^2 as a power series in the wavelength; a three-term Sellmeier formula is fitted to
-that series over 365 to 850 nm. A glass whose fit is off by more than FIT_TOLERANCE anywhere from
-380 to 780 nm is written as a table of the series' own values.
+The Sellmeier coefficients of Schott and Ohara are copied. Hoya, CDGM, Hikari and Sumita publish n^2
+as a power series of the wavelength; a three-term Sellmeier formula is fitted to that series from 365
+to 850 nm. If the error of the fit exceeds FIT_TOLERANCE anywhere from 380 to 780 nm, the glass is
+written as a table of the series' values.
 """
 
 import argparse
@@ -31,12 +31,16 @@ from scipy.optimize import least_squares
 
 FIT_TOLERANCE = 5e-6  # in index; the makers print indices to 1e-5
 D_LINE_UM = 0.5875618
-FIT_UM = np.concatenate([np.linspace(0.365, 0.85, 80), np.full(200, D_LINE_UM)])  # n_d itself is kept to 1e-6
+# Wavelengths of the fit, with n_d weighted so that it is preserved to 1e-6.
+FIT_UM = np.concatenate([np.linspace(0.365, 0.85, 80), np.full(200, D_LINE_UM)])
 VISIBLE_UM = np.linspace(0.380, 0.780, 201)
 TABLE_NM = [365, 380, 400, 420, 440, 460, 480, 500, 530, 560, 590, 620, 660, 700, 740, 780, 850, 1014]
+# Start values of the three C, in um^2.
 STARTS = ([0.008, 0.03, 100.0], [0.01, 0.05, 110.0], [0.005, 0.02, 60.0], [0.012, 0.06, 150.0])
 
-MAKERS = [  # catalogue, name in opticalglass, formula, edition of the data sheet
+# Catalogue, name in opticalglass, formula ("sellmeier", or powers of the wavelength in um in the series of n^2), and
+# edition of the data sheet.
+MAKERS = [
     ("schott", "Schott", "sellmeier", "Schott, optical glass data sheet, 1 June 2018"),
     ("ohara", "Ohara", "sellmeier", "Ohara, recommended and low-Tg glasses, May 2018"),
     ("hoya", "Hoya", [0, 2, -2, -4, -6, -8], "Hoya, data table 15 December 2018"),
@@ -45,9 +49,9 @@ MAKERS = [  # catalogue, name in opticalglass, formula, edition of the data shee
     ("sumita", "Sumita", [0, 2, -2, -4, -6, -8], "Sumita, Ver. 12.00.05, 29 July 2020"),
 ]
 
-# What no maker of glass lists, and lens-design programs have in catalogues of mixed materials, by the names that they
-# use: B, and C in um^2. A constant is a term with C = 0. Of crystals with two indices, the ordinary one. Germanium and
-# silicon, whose formulas give no index in the visible, are left out, and so is barium fluoride, as Hoya has a BAF2.
+# Materials that no glass maker lists, by their names in the catalogues of lens-design programs: source, names, B, and C
+# in um^2. A constant is a term with C = 0. For birefringent crystals the ordinary index is given. Germanium and silicon
+# are omitted, because their formulas have no index in the visible, and barium fluoride, because Hoya has a BAF2.
 OTHERS = [
     (
         "Fused silica: I. H. Malitson, J. Opt. Soc. Am. 55, 1205 (1965), at 20 C, 0.21 to 3.71 um",
@@ -93,7 +97,7 @@ OTHERS = [
     ),
 ]
 
-# Of plastics n_d and V_d alone: measurements of different samples differ by 1e-3 in index, and by several in V_d.
+# Plastics have only n_d and V_d, because samples differ by 1e-3 in index and by several units in V_d.
 PLASTICS = (
     "Optical plastics: n_d and V_d as makers state them, and lens-design programs have them under these names",
     {
@@ -110,20 +114,23 @@ PLASTICS = (
 
 
 def sellmeier_index(b, c, um):
+    """Refractive index by n^2 = 1 + sum B l^2 / (l^2 - C) at wavelengths in um."""
     um2 = np.asarray(um) ** 2
     return np.sqrt(1 + sum(bi * um2 / (um2 - ci) for bi, ci in zip(b, c, strict=True)))
 
 
 def series_index(coefficients, powers, um):
+    """Refractive index by n^2 = sum a l^p at wavelengths in um."""
     return np.sqrt(sum(a * np.asarray(um) ** p for a, p in zip(coefficients, powers, strict=True)))
 
 
 def fit_sellmeier(coefficients, powers):
-    """(B, C, largest index error from 380 to 780 nm) of the best three-term fit, or None."""
+    """(B, C, largest index error from 380 to 780 nm) of the best three-term Sellmeier fit; None if no fit is finite."""
     target = series_index(coefficients, powers, FIT_UM) ** 2 - 1
     um2 = FIT_UM**2
 
-    def linear(log_c):  # the best B for given C: a linear problem
+    def linear(log_c):
+        """The best B for these C, by linear least squares, and the residuals."""
         a = np.stack([um2 / (um2 - ci) for ci in np.exp(log_c)], axis=1)
         b = np.linalg.lstsq(a, target, rcond=None)[0]
         return b, a @ b - target
@@ -145,15 +152,18 @@ def fit_sellmeier(coefficients, powers):
 
 
 def number(v):
+    """Number with nine digits, as TOML."""
     return repr(float(f"{float(v):.9g}"))
 
 
 def sellmeier_line(b, c):
+    """TOML of a Sellmeier formula."""
     first, second = (", ".join(map(number, values)) for values in (b, c))
     return f"sellmeier = {{B=[{first}], C=[{second}]}}"
 
 
 def glasses_of_maker(name, formula):
+    """Yields (name, coefficients, formula, printed index at d) of a maker's data sheet in opticalglass."""
     from opticalglass.glassfactory import get_glass_catalog
 
     catalogue = get_glass_catalog(name)
@@ -167,6 +177,7 @@ def glasses_of_maker(name, formula):
 
 
 def glasses_of_agf(path):
+    """Yields (name, coefficients, formula, printed index at d) of an AGF file's glasses with a supported formula."""
     raw = Path(path).read_bytes()
     text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "latin-1").replace("\0", "")
     name = kind = index = None
@@ -184,7 +195,7 @@ def glasses_of_agf(path):
 
 
 def glass_line(coefficients, formula):
-    """(TOML of one glass, its index at d, how it was made)."""
+    """Returns the TOML of a glass, its index at d, and its origin: "copied", "fitted" or "table"."""
     if formula == "sellmeier":
         b, c = coefficients[:3], coefficients[3:6]
         return sellmeier_line(b, c), float(sellmeier_index(b, c, D_LINE_UM)), "copied"
@@ -198,7 +209,8 @@ def glass_line(coefficients, formula):
 
 
 def glasses_of_database(folder):
-    """(name, coefficients, formula, index at d, source) of a maker's glasses in the refractiveindex.info database."""
+    """Yields (name, coefficients, formula, printed index at d, source) of a maker's glasses in the refractiveindex.info
+    database."""
     for path in sorted(folder.glob("*.yml"), key=lambda p: p.stem.upper()):
         text = path.read_text(encoding="utf-8")
         found = re.search(r"type: formula (\d+)\s+wavelength_range:.*\s+coefficients: (.*)", text)
@@ -221,16 +233,21 @@ def glasses_of_database(folder):
 
 
 def bare(name):
+    """Name without separators and case, for comparison."""
     return re.sub("[-_ ]", "", name).upper()
 
 
 def plastics_lines():
+    """TOML lines of the plastics."""
     title, plastics = PLASTICS
     return [f"# {title}", *(f'"{name}" = {{ n_d = {n_d}, V_d = {v_d} }}' for name, (n_d, v_d) in plastics.items())]
 
 
 def extend(catalogue, database):
-    """Adds to the catalogue what it lacks; nothing that it has is changed."""
+    """Adds missing materials to a catalogue file, whose existing entries are not changed.
+
+    database: the folder data-nk/glass.
+    """
     head, *sections = re.split(r"\n(?=\[)", catalogue.read_text(encoding="utf-8"))
     makers = {re.match(r"\[(\w+)\]", section)[1]: section.rstrip("\n").split("\n") for section in sections}
     owners = {}
@@ -253,7 +270,7 @@ def extend(catalogue, database):
                 continue
             toml, n_d, made = glass_line(coefficients, formula)
             if not (1.3 < n_d < 2.3) or abs(printed - n_d) > 3e-5:
-                print(f"{maker}:{name} left out: formula gives {n_d:.6f}, stated is {printed}", file=sys.stderr)
+                print(f"{maker}:{name} omitted: the formula gives {n_d:.6f}, the database {printed}", file=sys.stderr)
                 continue
             counts[made] += 1
             added.setdefault(source, []).append(f'"{name}" = {{ {toml} }}')
@@ -273,7 +290,7 @@ def extend(catalogue, database):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--opticalglass", metavar="DIR", help="folder that the package opticalglass is installed in")
+    parser.add_argument("--opticalglass", metavar="DIR", help="folder in which the package opticalglass is installed")
     parser.add_argument(
         "--agf",
         action="append",
@@ -281,7 +298,7 @@ def main():
         metavar="CATALOGUE=FILE",
         help="a maker's AGF catalogue, for glasses that the data sheet no longer lists",
     )
-    parser.add_argument("--extend", metavar="DIR", help="add what lenses/glass.toml lacks, from this folder")
+    parser.add_argument("--extend", metavar="DIR", help="add glasses of this folder that lenses/glass.toml lacks")
     options = parser.parse_args()
     if options.extend:
         return extend(Path(__file__).parents[1] / "lenses" / "glass.toml", Path(options.extend))
@@ -309,7 +326,9 @@ def main():
                     continue
                 toml, n_d, made = glass_line(coefficients, form)
                 if not (1.3 < n_d < 2.3) or (printed and abs(printed - n_d) > 3e-5):
-                    problems.append(f"{catalogue}:{name} left out: formula gives {n_d:.6f}, the sheet prints {printed}")
+                    problems.append(
+                        f"{catalogue}:{name} omitted: the formula gives {n_d:.6f}, the data sheet {printed}"
+                    )
                     continue
                 seen.add((catalogue, name.upper()))
                 counts[made] = counts.get(made, 0) + 1

@@ -1,21 +1,23 @@
-"""Writes cpp/scene/materials/loss_tables.hpp: what single scattering loses at rough borders, and metals under coats.
+"""Writes cpp/scene/materials/loss_tables.hpp: energy loss of single scattering at rough dielectrics and coated metals.
 
-    python tools/make_loss_tables.py    # a minute; after make_ggx_tables.py, whose tables it reads
+    python tools/make_loss_tables.py    # takes a minute; run make_ggx_tables.py before, whose tables it reads
 
-A rough border between two dielectrics reflects and lets through; what meets a second facet is lost. The loss, in both
-together, depends on cosine, roughness and index. It is stored as a factor of `loss_scale`, which has the sharp dips of
-small roughness already. Two tables: seen from outside (the lesser index), and from inside. Layers: cosines of the
-critical angle, evenly. Rows: square roots of alpha, as in ggx_tables.hpp. Columns: square roots of the cosine.
+Rough dielectric (called border): light that reaches a second microfacet after reflection or refraction is lost. The
+total loss depends on cosine, roughness and relative index. It is stored divided by `loss_scale`, which already has the
+sharp dips of small roughness. There are two tables: incidence from outside (the smaller index), and from inside.
+Layers: cosine of the critical angle, uniformly. Rows: square root of alpha, as in ggx_tables.hpp. Columns: square root
+of the cosine of the direction.
 
-A coat over rough metal hides it from the eye and from the light. The lesser of the two shares is taken (bsdf.hpp), so
-that light is lost where the light meets more of the coat than the eye. The table holds that loss for a coat of weight
-1 and a metal that reflects all. Layers: square roots of the coat's alpha, rows: of the metal's, from 0.
+Coated metal: the metal below a coat is weighted by the smaller of the coat's transmittances for both directions
+(bsdf.hpp), so that light is lost if the coat reflects more in the direction of the light than in that of the viewer.
+The table has the loss for a coat of weight 1 and a perfectly reflecting metal. Layers: square root of the coat's alpha;
+rows: of the metal's alpha, from 0; columns: square root of the cosine.
 
-Losses by Gauss-Legendre quadrature over the visible facets on a grid some times as fine as the tables. These are not
-samples of it but fitted below it: what a table says above the loss is light from nowhere, and counts a hundred times
-as much as what it says below. Means, over the cosines: of what the tables say, as the program interpolates it. So the
-lobe of what was lost has the energy that it should have, whatever the errors of the tables. A border's mean stands
-over alpha^2, with which it grows on smooth surfaces; between the rows it is no straight line.
+Losses are computed by Gauss-Legendre quadrature over the visible facets, on grids finer than the tables. The tables are
+fitted, not sampled: a table value above the loss would create energy, so that such errors have a hundredfold weight.
+The mean losses over the cosines are those of the interpolated tables, so that the compensating lobe has the correct
+energy in spite of the tables' errors. The mean of a border is stored divided by alpha^2, with which it grows on smooth
+surfaces.
 """
 
 import re
@@ -24,21 +26,23 @@ from pathlib import Path
 import numpy as np
 from make_ggx_tables import SMOOTHEST, smith_lambda, stretched, text_of, visible_facets
 
-LAYERS, ROWS, COLUMNS = 16, 16, 24
-MEAN_ROWS = 2 * ROWS - 1
-LEAST_CRITICAL, MOST_CRITICAL = 0.3, np.sqrt(1 - 1 / 9)  # indices of 1.048 to 3
+LAYERS, ROWS, COLUMNS = 16, 16, 24  # of the tables of borders
+MEAN_ROWS = 2 * ROWS - 1  # finer, because the mean is not linear between the rows
+# Range of the cosine of the critical angle: relative indices of 1.048 to 3.
+LEAST_CRITICAL, MOST_CRITICAL = 0.3, np.sqrt(1 - 1 / 9)
 COAT_LAYERS, COAT_ROWS, COAT_COLUMNS = 8, 14, 24
-COAT_F0 = 0.04
-NODES = 80
+COAT_F0 = 0.04  # reflectance of a coat at normal incidence
+NODES = 80  # of the quadrature over the facets, along each axis
 
 
 def gauss(nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes and weights of Gauss-Legendre quadrature on 0 ... 1."""
     x, w = np.polynomial.legendre.leggauss(nodes)
     return (x + 1) / 2, w / 2
 
 
 class GgxTable:
-    """The table that cpp/scene/materials/ggx_albedo.hpp reads: the albedo for all cosines at one alpha."""
+    """Directional albedo of GGX microfacets from ggx_tables.hpp, as cpp/scene/materials/ggx_albedo.hpp reads it."""
 
     def __init__(self) -> None:
         text = Path("cpp/scene/materials/ggx_tables.hpp").read_text()
@@ -52,70 +56,83 @@ class GgxTable:
         self.mean_loss = numbers("MEAN_LOSS")
 
     def _row(self, alpha: float) -> tuple[int, float]:
-        place = (np.sqrt(alpha) - np.sqrt(SMOOTHEST)) / (1 - np.sqrt(SMOOTHEST)) * (self.rows - 1)
-        index = int(np.clip(place, 0, self.rows - 2))
-        return index, float(np.clip(place - index, 0, 1))
+        """Row of the tables below this alpha, and the fraction of the distance to the next one."""
+        position = (np.sqrt(alpha) - np.sqrt(SMOOTHEST)) / (1 - np.sqrt(SMOOTHEST)) * (self.rows - 1)
+        index = int(np.clip(position, 0, self.rows - 2))
+        return index, float(np.clip(position - index, 0, 1))
 
     def albedo(self, cosines: np.ndarray, alpha: float) -> tuple[np.ndarray, np.ndarray]:
+        """Albedos for a reflectance of 1, and for Schlick's factor (1 - cos)^5."""
         i, f = self._row(alpha)
-        at = np.arange(self.columns)
+        columns = np.arange(self.columns)
 
-        def read(table: np.ndarray, places: np.ndarray) -> np.ndarray:
-            return np.interp(places * (self.columns - 1), at, (1 - f) * table[i] + f * table[i + 1])
+        def read(table: np.ndarray, positions: np.ndarray) -> np.ndarray:
+            return np.interp(positions * (self.columns - 1), columns, (1 - f) * table[i] + f * table[i + 1])
 
         everything = read(self.all, stretched(cosines, alpha) ** (2 / 3))
         return everything, everything * read(self.grazing, np.sqrt(cosines))
 
     def mean_lost(self, alpha: float) -> float:
+        """Cosine-weighted mean of 1 - albedo."""
         i, f = self._row(alpha)
         return float(alpha**2 * ((1 - f) * self.mean_loss[i] + f * self.mean_loss[i + 1]))
 
 
 def fresnel(cosine: np.ndarray, eta: float) -> np.ndarray:
+    """Reflectance of unpolarised light. eta: index behind the border over that in front of it."""
     sine2 = (1 - cosine**2) / eta**2
-    beyond = np.sqrt(np.maximum(0, 1 - sine2))
-    parallel = (eta * cosine - beyond) / (eta * cosine + beyond)
-    perpendicular = (cosine - eta * beyond) / (cosine + eta * beyond)
+    refracted = np.sqrt(np.maximum(0, 1 - sine2))
+    parallel = (eta * cosine - refracted) / (eta * cosine + refracted)
+    perpendicular = (cosine - eta * refracted) / (cosine + eta * refracted)
     return np.where(sine2 < 1, (parallel**2 + perpendicular**2) / 2, 1.0)
 
 
-class SeenFacets:
-    """The facets that a direction sees, and what becomes of light from there: points of a quadrature."""
+class VisibleFacets:
+    """Quadrature over the microfacets that are visible from a direction.
+
+    cosine: of the direction to the mean normal. h: (3, nodes, nodes), facet normals; facing: cosine of the direction to
+    them; mirrored_z: cosine of the reflected direction to the mean normal.
+    """
 
     def __init__(self, cosine: float, alpha: float, nodes: int = NODES) -> None:
         x, w = gauss(nodes)
-        u, v = np.meshgrid(x, x / 2, indexing="ij")  # half of the turn: the rest is its mirror
+        u, v = np.meshgrid(x, x / 2, indexing="ij")  # half of the azimuths, because of mirror symmetry
         self.weight, self.alpha, self.cosine = np.outer(w, w), alpha, max(cosine, 1e-5 * alpha)
-        eye = np.array([np.sqrt(1 - self.cosine**2), 0.0, self.cosine])
-        self.h = visible_facets(eye, alpha, u, v)
-        self.facing = np.minimum(np.tensordot(eye, self.h, 1), 1)
+        direction = np.array([np.sqrt(1 - self.cosine**2), 0.0, self.cosine])
+        self.h = visible_facets(direction, alpha, u, v)
+        self.facing = np.minimum(np.tensordot(direction, self.h, 1), 1)
         self.mirrored_z = 2 * self.facing * self.h[2] - self.cosine
 
-    def share(self, z: np.ndarray) -> np.ndarray:
-        """Of light to a cosine z that no second facet catches; none below the surface."""
-        mine = smith_lambda(np.asarray(self.cosine), self.alpha)
-        return np.where(z > 0, (1 + mine) / (1 + mine + smith_lambda(np.where(z > 0, z, 1), self.alpha)), 0.0)
+    def escaping(self, z: np.ndarray) -> np.ndarray:
+        """Fraction G2 / G1 of the light into a direction of cosine z that no second facet blocks; 0 below the
+        surface."""
+        own = smith_lambda(np.asarray(self.cosine), self.alpha)
+        return np.where(z > 0, (1 + own) / (1 + own + smith_lambda(np.where(z > 0, z, 1), self.alpha)), 0.0)
 
     def border_loss(self, eta: float) -> float:
+        """Fraction of the light that is lost at a dielectric. eta: as in fresnel()."""
         reflected = fresnel(self.facing, eta)
         sine2 = (1 - self.facing**2) / eta**2
         through_z = np.sqrt(np.maximum(0, 1 - sine2)) * self.h[2] - (self.facing * self.h[2] - self.cosine) / eta
-        kept = reflected * self.share(self.mirrored_z) + (1 - reflected) * self.share(through_z)
-        return 1 - float(np.sum(self.weight * kept))
+        escaping = reflected * self.escaping(self.mirrored_z) + (1 - reflected) * self.escaping(through_z)
+        return 1 - float(np.sum(self.weight * escaping))
 
 
-def hats(places: np.ndarray, count: int) -> np.ndarray:
-    """The matrix of linear interpolation in a table of `count` at these places, 0 to 1."""
-    at = np.clip(places, 0, 1) * (count - 1)
-    index = np.minimum(at.astype(int), count - 2)
-    out = np.zeros((len(at), count))
-    out[np.arange(len(at)), index] = 1 - (at - index)
-    out[np.arange(len(at)), index + 1] += at - index
-    return out
+def interpolation_matrix(positions: np.ndarray, count: int) -> np.ndarray:
+    """(N, count): linear interpolation in a table of `count` values over 0 ... 1 at N positions."""
+    scaled = np.clip(positions, 0, 1) * (count - 1)
+    index = np.minimum(scaled.astype(int), count - 2)
+    matrix = np.zeros((len(scaled), count))
+    matrix[np.arange(len(scaled)), index] = 1 - (scaled - index)
+    matrix[np.arange(len(scaled)), index + 1] += scaled - index
+    return matrix
 
 
 def fitted_below(target: np.ndarray, scale: np.ndarray, axes: list[np.ndarray]) -> np.ndarray:
-    """The table that, interpolated and times scale, comes near the target, and rarely above it."""
+    """Fits a table whose interpolation times `scale` is close to the target, and rarely above it.
+
+    axes: interpolation matrices along the three axes. Solved by 600 steps of weighted gradient descent.
+    """
     from_table = "ai,bj,ck,ijk->abc"
     to_table = "ai,bj,ck,abc->ijk"
 
@@ -132,27 +149,28 @@ def fitted_below(target: np.ndarray, scale: np.ndarray, axes: list[np.ndarray]) 
 
 
 def loss_scale(cosines: np.ndarray, alpha: float, ggx: GgxTable) -> np.ndarray:
+    """Factor of the table of borders."""
     return 1 - ggx.albedo(cosines, alpha)[0] + 0.5 * alpha
 
 
 def border_tables(ggx: GgxTable) -> tuple[list[float], list[float]]:
-    """Losses from outside, then from inside, and their means."""
+    """Table values for incidence from outside, then from inside, and their means."""
     roots = np.linspace(np.sqrt(SMOOTHEST), 1, 4 * ROWS - 3)
-    # Between 0.01 and 1 evenly where the tables are read, and some below.
+    # Uniform in the square root, on which the tables depend, with some additional small ones.
     cosines = np.concatenate([np.linspace(0.01, 0.1, 5) ** 2, np.linspace(0.1, 1, 4 * COLUMNS) ** 2])
     critical = np.linspace(LEAST_CRITICAL, MOST_CRITICAL, 2 * LAYERS - 1)
     etas = 1 / np.sqrt(1 - critical**2)
     losses = np.empty((2, len(critical), len(roots), len(cosines)))
     for r, root in enumerate(roots):
         for c, cosine in enumerate(cosines):
-            seen = SeenFacets(cosine, root**2)
+            facets = VisibleFacets(cosine, root**2)
             for k, eta in enumerate(etas):
-                losses[:, k, r, c] = seen.border_loss(eta), seen.border_loss(1 / eta)
+                losses[:, k, r, c] = facets.border_loss(eta), facets.border_loss(1 / eta)
     scale = np.array([loss_scale(cosines, root**2, ggx) for root in roots])[None]
     axes = [
-        hats(np.linspace(0, 1, len(critical)), LAYERS),
-        hats(np.linspace(0, 1, len(roots)), ROWS),
-        hats(np.sqrt(cosines), COLUMNS),
+        interpolation_matrix(np.linspace(0, 1, len(critical)), LAYERS),
+        interpolation_matrix(np.linspace(0, 1, len(roots)), ROWS),
+        interpolation_matrix(np.sqrt(cosines), COLUMNS),
     ]
     tables = [fitted_below(side, scale, axes) for side in losses]
     x, w = gauss(256)
@@ -160,24 +178,25 @@ def border_tables(ggx: GgxTable) -> tuple[list[float], list[float]]:
     mean_roots = np.linspace(0, 1, MEAN_ROWS)
     alphas = (np.sqrt(SMOOTHEST) + mean_roots * (1 - np.sqrt(SMOOTHEST))) ** 2
     scales = np.array([loss_scale(nodes, a, ggx) for a in alphas])
-    rows, columns = hats(mean_roots, ROWS), hats(x, COLUMNS)
+    rows, columns = interpolation_matrix(mean_roots, ROWS), interpolation_matrix(x, COLUMNS)
     scales /= alphas[:, None] ** 2
     means = [np.einsum("rn,n,rj,nk,ijk->ir", scales, weights, rows, columns, t, optimize=True) for t in tables]
     return [float(v) for t in tables for v in t.ravel()], [float(v) for m in means for v in m.ravel()]
 
 
 def coat_albedo(cosines: np.ndarray, alpha: float, ggx: GgxTable) -> np.ndarray:
-    """FacetReflectance::albedo of microfacet_reflection.hpp."""
+    """Directional albedo of a coat, as FacetReflectance::albedo of microfacet_reflection.hpp."""
     if alpha < SMOOTHEST:
         return COAT_F0 + (1 - COAT_F0) * (1 - cosines) ** 5
     everything, grazing = ggx.albedo(cosines, alpha)
     lost = ggx.mean_lost(alpha)
     mean = (20 * COAT_F0 + 1) / 21
-    several = (1 - lost) * mean**2 / (1 - lost * mean)
-    return (everything - grazing) * COAT_F0 + grazing + (1 - everything) * several
+    multiple = (1 - lost) * mean**2 / (1 - lost * mean)
+    return (everything - grazing) * COAT_F0 + grazing + (1 - everything) * multiple
 
 
 def coat_tables(ggx: GgxTable) -> tuple[list[float], list[float]]:
+    """Table values of coated metals, and their means."""
     coats, metals = np.linspace(0, 1, 2 * COAT_LAYERS - 1), np.linspace(0, 1, 2 * COAT_ROWS - 1)
     cosines = np.concatenate([[0.001], np.linspace(0.1, 1, 64) ** 2])
     losses = np.zeros((len(coats), len(metals), len(cosines)))
@@ -186,21 +205,26 @@ def coat_tables(ggx: GgxTable) -> tuple[list[float], list[float]]:
     for m, metal in enumerate(metals):
         alpha = metal**2
         if alpha < SMOOTHEST:
-            continue  # a mirror, which has the same cosine twice
+            continue  # a mirror, for which both directions have the same cosine
         lost = ggx.mean_lost(alpha)
-        again = weights * (1 - ggx.albedo(nodes, alpha)[0]) / lost
+        # Distribution of multiply scattered light over the cosines.
+        multiple = weights * (1 - ggx.albedo(nodes, alpha)[0]) / lost
         for c, cosine in enumerate(cosines):
-            seen = SeenFacets(cosine, alpha, 48)
-            reflected = seen.weight * seen.share(seen.mirrored_z)
-            mine = 1 - ggx.albedo(np.array([cosine]), alpha)[0][0]
+            facets = VisibleFacets(cosine, alpha, 48)
+            reflected = facets.weight * facets.escaping(facets.mirrored_z)
+            multiple_fraction = 1 - ggx.albedo(np.array([cosine]), alpha)[0][0]
             for k, coat in enumerate(coats):
-                here = coat_albedo(np.array([cosine]), coat**2, ggx)[0]
-                more = np.maximum(0, coat_albedo(np.clip(seen.mirrored_z, 0, 1), coat**2, ggx) - here)
-                more_again = np.maximum(0, coat_albedo(nodes, coat**2, ggx) - here)
-                losses[k, m, c] = np.sum(reflected * more) + mine * np.sum(again * more_again)
-    axes = [hats(coats, COAT_LAYERS), hats(metals, COAT_ROWS), hats(np.sqrt(cosines), COAT_COLUMNS)]
+                own = coat_albedo(np.array([cosine]), coat**2, ggx)[0]
+                excess = np.maximum(0, coat_albedo(np.clip(facets.mirrored_z, 0, 1), coat**2, ggx) - own)
+                multiple_excess = np.maximum(0, coat_albedo(nodes, coat**2, ggx) - own)
+                losses[k, m, c] = np.sum(reflected * excess) + multiple_fraction * np.sum(multiple * multiple_excess)
+    axes = [
+        interpolation_matrix(coats, COAT_LAYERS),
+        interpolation_matrix(metals, COAT_ROWS),
+        interpolation_matrix(np.sqrt(cosines), COAT_COLUMNS),
+    ]
     table = fitted_below(losses, np.ones_like(losses), axes)
-    means = np.einsum("n,nk,ijk->ij", weights, hats(x, COAT_COLUMNS), table)
+    means = np.einsum("n,nk,ijk->ij", weights, interpolation_matrix(x, COAT_COLUMNS), table)
     return [float(v) for v in table.ravel()], [float(v) for v in means.ravel()]
 
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Write tests/truth/peer_rays.json.gz: what Optiland and ray-optics say of random and bundled lenses.
+"""Write tests/truth/peer_rays.json.gz: first-order data and rays of random and bundled lenses by Optiland and
+ray-optics.
 
     pip install -e '.[dev,truth]'
     python tools/make_peer_rays.py
@@ -20,9 +21,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from tests.centred_lenses import CENTRED
 from tests.truth import backends, peer_file, peers, random_lenses, random_rays
 
-RANDOM_LENSES = range(1, 201)  # their seeds
-RANDOM_RAYS = 20  # each
-BUNDLED_RAYS = 40
+RANDOM_LENSES = range(1, 201)  # seeds of the random lenses
+RANDOM_RAYS = 20  # rays through each random lens
+BUNDLED_RAYS = 40  # rays through each bundled lens
 
 
 def main() -> None:
@@ -42,11 +43,11 @@ def main() -> None:
     cases = []
     for lens, (origins, directions) in inputs:
         rays = random_rays.unit(origins, directions)
-        said = {
+        opinions = {
             name: peer_file.Opinion(peer.first_order(lens), peer.trace(lens, rays))
             for name, peer in peers.PEERS.items()
         }
-        cases.append(peer_file.case_to_json(lens, origins, directions, said))
+        cases.append(peer_file.case_to_json(lens, origins, directions, opinions))
     peer_file.write(versions, cases)
     print(f"{peer_file.FILE}: {len(cases)} lenses, {peer_file.FILE.stat().st_size} bytes")
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write tests/truth/ray_optics_analysis.json.gz: what ray-optics says of the bundled lenses' aberrations.
+"""Write tests/truth/ray_optics_analysis.json.gz: aberrations of the bundled lenses by ray-optics.
 
 pip install -e '.[dev,truth]'
 python tools/make_ray_optics_analysis.py
@@ -25,8 +25,8 @@ def main() -> None:
         if name in ray_optics_analysis.ABSENT:
             continue
         lens = rc.Lens.load(name)
-        light = rc.analysis.Bundles(lens, 1e-3 * ray_optics_analysis.OBJECT_MM)
-        field = round(float(rc.analysis.field_angles_deg(lens, [ray_optics_analysis.FIELD], light)[0]), 1)
+        bundles = rc.analysis.Bundles(lens, 1e-3 * ray_optics_analysis.OBJECT_MM)
+        field = round(float(rc.analysis.field_angles_deg(lens, [ray_optics_analysis.FIELD], bundles)[0]), 1)
         prescription = backends.of_bundled_lens(name)
         opinions[name] = field, ray_optics_analysis.analysed(prescription, lens.film_distance_mm, field)
         print(f"{name}, {field} deg")

@@ -1,6 +1,6 @@
-"""Writes cpp/camera/effects/dispersion/spectra.hpp: the spectra that dispersion works with, every 5 nm from 380 to 780.
+"""Writes cpp/camera/effects/dispersion/spectra.hpp: spectra for dispersion, every 5 nm from 380 to 780 nm.
 
-Needs colour-science (pip install colour-science), for its tables alone: the CIE 1931 observer, the CIE illuminants
+Needs the tables of colour-science (pip install colour-science): the CIE 1931 observer, the CIE illuminants
 D65, D50, A and FL2, and the basis of Mallett and Yuksel, "Spectral Primary Decomposition for Rendering with sRGB
 Reflectance" (EGSR 2019).
 
@@ -37,14 +37,15 @@ using VisibleSpectrum = std::array<double, 81>;
 
 
 def table(name: str, comment: str, values: np.ndarray) -> str:
+    """C++ declaration of a spectrum."""
     numbers = ", ".join(f"{float(v):.9g}" for v in values)
     return f"/// {comment}\ninline constexpr VisibleSpectrum {name} = {{{numbers}}};\n"
 
 
 def row(values: np.ndarray, wavelengths: np.ndarray) -> np.ndarray:
-    """Those at WAVELENGTHS_NM, all of which the source has."""
-    places = {int(w): i for i, w in enumerate(wavelengths)}
-    return np.array([values[places[int(w)]] for w in WAVELENGTHS_NM])
+    """Values at WAVELENGTHS_NM. wavelengths: of all values; they must include WAVELENGTHS_NM."""
+    index = {int(nm): i for i, nm in enumerate(wavelengths)}
+    return np.array([values[index[int(nm)]] for nm in WAVELENGTHS_NM])
 
 
 def main() -> None:

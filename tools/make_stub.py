@@ -4,7 +4,7 @@
     ./run stub --check    fails if it is not up to date
 
 The signatures come from the bindings: pybind11-stubgen reads them from the docstrings. This file adds what a docstring
-cannot say: names for type checkers alone, overloads whose result depends on a literal, and type parameters.
+cannot express: names only for type checkers, overloads whose result depends on a literal, and type parameters.
 """
 
 from __future__ import annotations
@@ -101,17 +101,18 @@ class _Splats(TypedDict):
     units_per_lux: float
 
 '''
-# Attributes of exceptions, which C++ sets.
+# Attributes of exceptions, which C++ sets, by class.
 ATTRIBUTES = {
     "LensFileError": ["file: str", "line: int", "surface: int", "glass: str", "candidate: str", "can_be_forced: bool"],
 }
+# Base classes of classes with type parameters.
 PARAMETERS = {
     "TraceResult": "Generic[_Doubles, _Integers]",
     "CameraRays": "Generic[_Doubles, _Floats, _Integers]",
     "RayChunks": "Generic[_Doubles, _Floats, _Integers]",
 }
 DOUBLES = "NDArray[float64]"
-# Functions whose result depends on arguments: the changed annotations of the arguments, and that of the result.
+# Overloads of functions whose result depends on arguments: changed annotations of arguments, and that of the result.
 OVERLOADS: dict[str, list[tuple[dict[str, str], str]]] = {
     "Lens.trace": [
         ({"origins_mm": "_CudaArray", "directions": "_CudaArray"}, "TraceResult[DeviceArray, DeviceArray]"),
@@ -136,8 +137,8 @@ SPELLINGS = (
     (r"\bnumpy\.dtype:", "np.dtype[Any]:"),
     (r"__hash__: typing\.ClassVar\[None\] = None", "__hash__: ClassVar[None]  # type: ignore[assignment]"),
 )
-# Methods that say nothing to type checkers.
-LEFT_OUT = {
+# Methods that are irrelevant to type checkers.
+OMITTED = {
     "__new__",
     "__reduce__",
     "__repr__",
@@ -177,7 +178,7 @@ class Parser(
 
 
 class StubPrinter(Printer):
-    """Writes the types of arguments as they are accepted, which is more than is shown to users."""
+    """Writes the types of arguments that are accepted, which are more general than those shown to users."""
 
     def print_function(self, func: Function) -> list[str]:
         accepted = copy.copy(func)
@@ -189,8 +190,9 @@ class StubPrinter(Printer):
         return super().print_function(accepted)
 
 
-def overloads(method: Method, of_class: str) -> Iterator[Method]:
-    variants = OVERLOADS.get(f"{of_class}.{method.function.name}")
+def overloads(method: Method, class_name: str) -> Iterator[Method]:
+    """Yields the overloads of a method, or the method itself if it has none."""
+    variants = OVERLOADS.get(f"{class_name}.{method.function.name}")
     if variants is None:
         yield method
         return
@@ -210,13 +212,14 @@ def overloads(method: Method, of_class: str) -> Iterator[Method]:
 
 
 def bound_class(name: str, type_: type, parser: Parser, printer: Printer) -> list[str]:
+    """Lines of a class that pybind11 binds."""
     parsed: Class | None = parser.handle_class(QualifiedName.from_str(f"realcam._core.{name}"), type_)
     assert parsed is not None
     parsed.bases = []
     parsed.methods = [
         changed
         for method in parsed.methods
-        if method.function.name not in LEFT_OUT
+        if method.function.name not in OMITTED
         for changed in overloads(method, name)
     ]
     head, *body = printer.print_class(parsed)
@@ -225,7 +228,7 @@ def bound_class(name: str, type_: type, parser: Parser, printer: Printer) -> lis
 
 
 def python_class(name: str, type_: type) -> list[str]:
-    """A class that the extension makes of Python's: an exception, an IntEnum or a named tuple."""
+    """Lines of a Python class that the extension creates: an exception, an IntEnum or a named tuple."""
     if issubclass(type_, IntEnum):
         return [f"class {name}(IntEnum):", *indent_lines([f"{member.name} = {member.value}" for member in type_])]
     if issubclass(type_, tuple):
@@ -236,6 +239,7 @@ def python_class(name: str, type_: type) -> list[str]:
 
 
 def constant(name: str, value: Any) -> str:
+    """Line of a module constant."""
     kind = {set: "set[str]", int: "int", str: "str"}.get(type(value), "np.dtype[np.void]")
     return f"{name}: {kind}"
 
@@ -257,12 +261,12 @@ def stub() -> str:
         else:
             lines.append(constant(name, value))
     (settings,) = parser.handle_function(QualifiedName.from_str("__init__"), _core.RenderSettings.__init__)
-    words = [
+    keywords = [
         f"{argument.name}: {printer.print_annotation(argument.annotation)}"
         for argument in settings.args
         if argument.kw_only
     ]
-    lines += ["class _SettingWords(TypedDict, total=False):", *indent_lines(words)]
+    lines += ["class _SettingWords(TypedDict, total=False):", *indent_lines(keywords)]
     text = "\n".join([*lines, ""])
     for pattern, spelling in SPELLINGS:
         text = re.sub(pattern, spelling, text)
@@ -270,6 +274,7 @@ def stub() -> str:
 
 
 def formatted(text: str) -> str:
+    """The stub as ruff formats it, without unused imports."""
     for command in (["check", "--fix", "--quiet", "--select", "F401,I"], ["format"]):
         ruff = [Path(sys.executable).with_name("ruff"), *command, "--stdin-filename", STUB, "-"]
         text = subprocess.run(ruff, input=text, capture_output=True, text=True, check=True).stdout

@@ -1,9 +1,9 @@
-"""Writes tests/truth/tolerance_peer.json.gz: copies of a lens with the same errors as Optiland judges them.
+"""Writes tests/truth/tolerance_peer.json.gz: MTF of perturbed copies of a lens, computed by Optiland.
 
-python tools/make_tolerance_peer.py     needs Optiland 0.6 (github.com/optiland/optiland), and realcam for the errors
+python tools/make_tolerance_peer.py     needs Optiland 0.6 (github.com/optiland/optiland)
 
-Optiland's tolerancing applies the errors, refocuses by its optimiser on the RMS spots, and its geometric MTF, which it
-scales by the limit of diffraction, is taken at three fields.
+Optiland's tolerancing applies the errors and refocuses by minimising the RMS spots. Its geometric MTF, scaled by the
+diffraction limit, is recorded at three fields.
 """
 
 from __future__ import annotations
@@ -24,26 +24,29 @@ ROWS = [
     (79.6836, 2.95208, 1.62041),
     (-18.39533, 42.20778, 1.0),
 ]
-STOP = 3  # in front of this row's surface, at no distance
+STOP = 3  # index of the surface with the stop
+# Entrance-pupil diameter, fields, wavelength, and frequency of the MTF in periods per mm.
 APERTURE_MM, FIELDS_DEG, WAVELENGTH_UM, FREQUENCY = 10.0, (0.0, 7.0, 14.0), 0.5875618, 20.0
 COPIES, SEED = 60, 5
+# Limits of the errors.
 RADIUS_PERCENT, THICKNESS_MM, INDEX, TILT_ARCMIN = 0.2, 0.05, 5e-4, 3.0
 
 
 def errors() -> list[tuple[str, int, float]]:
-    """Kind, surface and limit."""
-    found = []
+    """Returns kind, surface (from 0) and limit of each error, in mm or degrees."""
+    limits = []
     for k, (radius, _, index) in enumerate(ROWS):
-        found.append(("radius", k, abs(radius) * RADIUS_PERCENT / 100))
+        limits.append(("radius", k, abs(radius) * RADIUS_PERCENT / 100))
         if k + 1 < len(ROWS):
-            found.append(("thickness", k, THICKNESS_MM))
+            limits.append(("thickness", k, THICKNESS_MM))
         if index > 1:
-            found.append(("index", k, INDEX))
-        found += [("surface_tilt_x", k, TILT_ARCMIN / 60), ("surface_tilt_y", k, TILT_ARCMIN / 60)]
-    return found
+            limits.append(("index", k, INDEX))
+        limits += [("surface_tilt_x", k, TILT_ARCMIN / 60), ("surface_tilt_y", k, TILT_ARCMIN / 60)]
+    return limits
 
 
 def optic():
+    """The nominal lens in Optiland."""
     from optiland.materials import IdealMaterial
     from optiland.optic import Optic
 
@@ -63,11 +66,12 @@ def optic():
 
 
 def mtfs(lens) -> list[list[float]]:
+    """Tangential and sagittal MTF at each field."""
     from optiland.mtf import GeometricMTF
 
-    found = GeometricMTF(lens, num_rays=64, num_points=401, max_freq=2 * FREQUENCY, scale=True)
-    at = int(np.argmin(np.abs(np.asarray(found.freq) - FREQUENCY)))
-    return [[float(tangential[at]), float(sagittal[at])] for tangential, sagittal in found.mtf]
+    result = GeometricMTF(lens, num_rays=64, num_points=401, max_freq=2 * FREQUENCY, scale=True)
+    index = int(np.argmin(np.abs(np.asarray(result.freq) - FREQUENCY)))
+    return [[float(tangential[index]), float(sagittal[index])] for tangential, sagittal in result.mtf]
 
 
 def main() -> None:
@@ -75,6 +79,8 @@ def main() -> None:
     from optiland.tolerancing.perturbation import BaseSampler
 
     class Listed(BaseSampler):
+        """Sampler that returns given values one after the other."""
+
         def __init__(self, values):
             self.values = iter(values)
 
@@ -110,13 +116,13 @@ def main() -> None:
         else:
             study.add_perturbation("tilt", Listed(np.deg2rad(values)), surface_number=k + 1, axis=kind[-1])
     study.add_compensator("thickness", surface_number=len(ROWS))
-    found = []
+    copies_mtf = []
     for _ in range(COPIES):
         study.reset()
         for perturbation in study.perturbations:
             perturbation.apply()
         study.apply_compensators()
-        found.append(mtfs(lens))
+        copies_mtf.append(mtfs(lens))
     study.reset()
     content = {
         "rows": ROWS,
@@ -127,7 +133,7 @@ def main() -> None:
         "frequency_per_mm": FREQUENCY,
         "errors": [[kind, k] for kind, k, _ in kinds],
         "sizes": sizes.tolist(),
-        "mtf": found,
+        "mtf": copies_mtf,
     }
     with gzip.GzipFile(TARGET, "wb", mtime=0) as file:
         file.write(json.dumps(content).encode())

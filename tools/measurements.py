@@ -1,4 +1,4 @@
-"""What the tests measured, read back and checked (tests/measurement.py and tests/cpp/measurement.hpp write it)."""
+"""Reads and checks the measurements that tests/measurement.py and tests/cpp/measurement.hpp write."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from measurement import Measurement
 
+#: Sections of the page, in order.
 SECTIONS = (
     "Surfaces",
     "Rays",
@@ -30,23 +31,25 @@ SECTIONS = (
 
 
 class MeasurementError(Exception):
-    """Says where in the file, and what is wrong."""
+    """An invalid measurement; the message has the file, the line and the reason."""
 
 
 @dataclass(frozen=True)
 class Figure:
-    """One measurement, or the one nearest to its limit of all `runs` that have its name."""
+    """A measurement, or that of several runs which is closest to its limit."""
 
     measurement: Measurement
-    broken: bool  # of a routine that is wrong by intent
-    runs: int = 1
+    broken: bool  # True for an intentionally broken routine, whose error must exceed the limit
+    runs: int = 1  # number of measurements from which it was selected
 
     @property
     def within(self) -> bool:
-        return self.measurement.worst <= self.measurement.limit  # not where it is NaN
+        """True if the error is within the limit; false for NaN."""
+        return self.measurement.worst <= self.measurement.limit
 
     @property
     def share_of_limit(self) -> float:
+        """The error over the limit; inf for NaN."""
         worst, limit = self.measurement.worst, self.measurement.limit
         if math.isnan(worst):
             return math.inf
@@ -57,7 +60,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Run:
-    """What measurements are of."""
+    """Commit, date and machine of a run of the tests."""
 
     commit: str
     date: str
@@ -66,21 +69,23 @@ class Run:
 
 
 def read(path: Path) -> tuple[list[Figure], list[Run]]:
-    """All of a file of measurements. Raises MeasurementError for a line that is none, or that does not hold."""
+    """Returns the measurements and runs of a file. Raises MeasurementError for an invalid line, and if an error exceeds
+    its limit or that of a broken routine does not."""
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except OSError as error:
         raise MeasurementError(f"{path}: {error.strerror}") from error
-    found = [_entry(line, f"{path}:{number}") for number, line in enumerate(lines, 1)]
-    figures, runs = [e for e in found if isinstance(e, Figure)], [e for e in found if isinstance(e, Run)]
+    entries = [_entry(line, f"{path}:{number}") for number, line in enumerate(lines, 1)]
+    figures, runs = [e for e in entries if isinstance(e, Figure)], [e for e in entries if isinstance(e, Run)]
     if not figures:
-        raise MeasurementError(f"{path}: no measurements; tests write them where REALCAM_MEASUREMENTS names a file")
+        raise MeasurementError(f"{path}: no measurements; tests write them if REALCAM_MEASUREMENTS names a file")
     if not runs:
-        raise MeasurementError(f"{path}: of which machine is not said; pytest writes a line of it when it starts")
+        raise MeasurementError(f"{path}: the line about the machine is missing, which pytest writes when it starts")
     return figures, list(dict.fromkeys(runs))
 
 
-def _entry(line: str, place: str) -> Figure | Run:
+def _entry(line: str, location: str) -> Figure | Run:
+    """Parses a line. location: file and line number, for messages. Raises MeasurementError."""
     try:
         fields = json.loads(line)
         kind = fields.pop("kind")
@@ -88,25 +93,26 @@ def _entry(line: str, place: str) -> Figure | Run:
             return Run(**{**fields, "devices": tuple(fields["devices"])})
         m = Measurement(**fields)
     except (ValueError, TypeError, AttributeError, KeyError) as error:
-        raise MeasurementError(f"{place}: not a measurement: {error}") from error
+        raise MeasurementError(f"{location}: not a measurement: {error}") from error
     for name, value in asdict(m).items():
-        wanted = (int, float) if name in ("worst", "limit") else str
-        if not isinstance(value, wanted):
-            raise MeasurementError(f"{place}: {name} cannot be {value!r}")
+        expected = (int, float) if name in ("worst", "limit") else str
+        if not isinstance(value, expected):
+            raise MeasurementError(f"{location}: {name} cannot be {value!r}")
     if m.section not in SECTIONS:
-        raise MeasurementError(f'{place}: unknown section "{m.section}"; the page has {", ".join(SECTIONS)}')
+        raise MeasurementError(f'{location}: unknown section "{m.section}"; the page has {", ".join(SECTIONS)}')
     if kind not in ("held", "broken"):
-        raise MeasurementError(f'{place}: unknown kind "{kind}"; expected held, broken or run')
+        raise MeasurementError(f'{location}: unknown kind "{kind}"; expected held, broken or run')
     figure = Figure(m, kind == "broken")
     if figure.within == figure.broken:
         problem = "broken by intent, but within its limit" if figure.broken else "past its limit"
         name = f"{m.what} ({m.number_type}, {m.backend})"
-        raise MeasurementError(f"{place}: {problem}: {name}: {m.worst:g}, limit {m.limit:g} {m.unit}")
+        raise MeasurementError(f"{location}: {problem}: {name}: {m.worst:g}, limit {m.limit:g} {m.unit}")
     return figure
 
 
 def grouped(figures: Iterable[Figure]) -> list[Figure]:
-    """One figure for all that differ in their test's parameters, machine and commit alone: the nearest to its limit."""
+    """Selects, of the measurements that differ only in test parameters, machine and commit, the closest to its
+    limit."""
     groups: dict[tuple[object, ...], list[Figure]] = {}
     for figure in figures:
         m = figure.measurement

@@ -17,11 +17,11 @@ from matplotlib.colors import LogNorm
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.float32_error import LIMIT_UM, ImagePointErrors, image_point_errors, rays_over_film_and_pupil
 
-COLUMNS = 5
-STOP_BANDS = 24
-LEAST_UM = 1e-3
+COLUMNS = 5  # of panels
+STOP_BANDS = 24  # cells over the height in the stop
+MIN_UM = 1e-3  # lower end of the colour scale
 TICKS_UM = (0.001, 0.003, 0.01, 0.03, LIMIT_UM)
-PAST_LIMIT = "#d62728"
+OVER_LIMIT_COLOUR = "#d62728"
 
 
 def save_error_plot(names: list[str], path: Path) -> int:
@@ -43,13 +43,14 @@ def save_error_plot(names: list[str], path: Path) -> int:
     bar = figure.colorbar(mesh, ax=panels, extend="both", ticks=TICKS_UM, aspect=40, pad=0.01)
     bar.ax.set_yticklabels([f"{tick:g}" for tick in TICKS_UM])
     bar.ax.minorticks_off()
-    bar.set_label("worst error / µm (red: past the limit)")
+    bar.set_label("worst error / µm (red: above the limit)")
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=130)
     return count
 
 
 def _draw(name: str, errors: ImagePointErrors, axes: Axes) -> QuadMesh:
+    """Draws the largest error over film radius and height in the stop."""
     radii, field = np.unique(errors.film_radius_mm, return_inverse=True)
     band = np.minimum((errors.stop_height * STOP_BANDS).astype(int), STOP_BANDS - 1)
     worst = np.full((STOP_BANDS, len(radii)), -1.0)
@@ -59,9 +60,9 @@ def _draw(name: str, errors: ImagePointErrors, axes: Axes) -> QuadMesh:
     mesh = axes.pcolormesh(
         np.append(radii - half, radii[-1] + half),
         np.linspace(0, 1, STOP_BANDS + 1),
-        np.ma.masked_less(worst, 0),  # no ray that passes
-        norm=LogNorm(LEAST_UM, LIMIT_UM),
-        cmap=matplotlib.colormaps["viridis"].with_extremes(over=PAST_LIMIT),
+        np.ma.masked_less(worst, 0),  # hides cells without passing rays
+        norm=LogNorm(MIN_UM, LIMIT_UM),
+        cmap=matplotlib.colormaps["viridis"].with_extremes(over=OVER_LIMIT_COLOUR),
     )
     axes.set_xlim(0, radii[-1])
     axes.tick_params(labelsize=8)
@@ -69,6 +70,6 @@ def _draw(name: str, errors: ImagePointErrors, axes: Axes) -> QuadMesh:
     axes.set_title(
         f"{name}\nworst {largest:.3f} µm, limit {LIMIT_UM:g} µm",
         fontsize=8.5,
-        color=PAST_LIMIT if largest > LIMIT_UM else "black",
+        color=OVER_LIMIT_COLOUR if largest > LIMIT_UM else "black",
     )
     return mesh

@@ -1,4 +1,5 @@
-"""The picture of docs/psf.md: the double Gauss at f/2 and f/8, on the axis and at 15 degrees, waves and rays."""
+"""Draws the picture of docs/psf.md: point spread functions of the double Gauss at f/2 and f/8, with and without
+diffraction."""
 
 from __future__ import annotations
 
@@ -10,35 +11,35 @@ import matplotlib.figure
 import numpy as np
 import realcam as rc
 
-ACROSS_UM = 100.0
-POINTS = 320
+WIDTH_UM = 100.0  # of each panel on the film
+SAMPLES = 320  # across each panel
 
 
 def save_plot(path: Path) -> None:
-    """Each panel is 0.1 mm of film, in decades of its own largest value."""
+    """Plots each point spread function on a logarithmic scale relative to its peak."""
     figure = matplotlib.figure.Figure(figsize=(10, 10.2), layout="constrained")
     panels = figure.subplots(3, 3, squeeze=False)
     wide_open = rc.Lens.load("double-gauss-50mm")
     rows = [("f/2", wide_open), ("f/8", wide_open.stopped_down(8))]
     rows.append(("f/8, 7 blades", wide_open.with_iris(7).stopped_down(8)))
-    for line, (name, lens) in zip(panels, rows, strict=True):
+    for row_panels, (name, lens) in zip(panels, rows, strict=True):
         columns = [(0.0, "direct"), (15.0, "direct"), (15.0, "geometric")]
-        for panel, (field, method) in zip(line, columns, strict=True):
+        for panel, (field, method) in zip(row_panels, columns, strict=True):
             psf = lens.psf(
                 field,
                 object_distance_m=math.inf,
                 method=method,
-                size=POINTS,
-                pitch_um=ACROSS_UM / POINTS,
+                size=SAMPLES,
+                pitch_um=WIDTH_UM / SAMPLES,
                 centre="centroid",
             )
             decades = np.log10(np.maximum(psf.values / psf.values.max(), 1e-6))
-            edge = ACROSS_UM / 2
+            edge = WIDTH_UM / 2
             image = panel.imshow(
                 decades, extent=(-edge, edge, -edge, edge), origin="lower", cmap="inferno", vmin=-5, vmax=0
             )
-            what = "rays alone" if method == "geometric" else f"Strehl {psf.strehl:.2g}"
-            panel.set_title(f"{name}, {field:.0f}°, {what}", fontsize=10)
+            detail = "geometric" if method == "geometric" else f"Strehl {psf.strehl:.2g}"
+            panel.set_title(f"{name}, {field:.0f}°, {detail}", fontsize=10)
     for panel in panels[:, 0]:
         panel.set_ylabel("y / um")
     for panel in panels[-1]:

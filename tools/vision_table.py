@@ -17,7 +17,7 @@ WIDTH = 1920  # pixels
 
 
 def cell(camera: rc.Camera, model: str) -> str:
-    """Root mean square and largest residual; a star where the model cannot be inverted over all of the film."""
+    """RMS and largest residual in pixels, with a star if the model is not invertible over the whole film."""
     try:
         fit = rc.fit_camera_model(camera, model)
     except rc.InputError:
@@ -26,7 +26,7 @@ def cell(camera: rc.Camera, model: str) -> str:
 
 
 def parallax(camera: rc.Camera) -> str:
-    """by how much the fisheye model of the plane in focus is off for points 20 focal lengths away, at most."""
+    """Largest error in pixels of the fisheye model, fitted in the plane in focus, for points 20 focal lengths away."""
     fit = rc.fit_camera_model(camera, "fisheye")
     metres = 20 * camera.lens.first_order().effective_focal_length_mm / 1000
     try:

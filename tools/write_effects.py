@@ -12,8 +12,8 @@ TOP = """\
 
 *Made by `python tools/write_effects.py` from `cpp/camera/effects/effects.hpp`.*
 
-What a picture may have besides what every picture has. `effects={"dispersion", "ghosts=1e-8", "-motion_blur"}`,
-`--effects` and `effects` in shot files name them; [plan.md](../plan.md) says how `"auto"` decides.
+Effects that pictures can have in addition to what is always simulated. `effects={"dispersion", "ghosts=1e-8",
+"-motion_blur"}`, `--effects` and `effects` in shot files name them; [plan.md](../plan.md) says how `"auto"` decides.
 
 | effect | what it is | what it needs | time, CPU and GPU |
 |---|---|---|---|
@@ -25,15 +25,17 @@ Times are those of the frame benchmark's picture through the double Gauss, over 
 
 
 def row_of(effect: rc.EffectInfo) -> str:
-    what = f"{effect.what}; {effect.usage}" if effect.usage else effect.what
+    """Row of the table."""
+    description = f"{effect.what}; {effect.usage}" if effect.usage else effect.what
     times = [f"{time:.2f}" if time else "–" for time in (effect.cpu_time, effect.gpu_time)]
     name = f"{effect.name}.md"
     has_page = (PAGE.parents[1] / name).exists()
     name = f"[`{effect.name}`](../{name})" if has_page else f"`{effect.name}`"
-    return f"| {name} | {what} | {effect.needs} | {', '.join(times)} |\n"
+    return f"| {name} | {description} | {effect.needs} | {', '.join(times)} |\n"
 
 
 def page() -> str:
+    """The page as Markdown."""
     return TOP + "".join(map(row_of, rc.effects())) + BOTTOM
 
 

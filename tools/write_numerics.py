@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Write docs/generated/numerics.md and its plot from what the tests measured.
+"""Write docs/generated/numerics.md and its plot from the measurements of the tests.
 
     ./run numerics
     python tools/write_numerics.py MEASUREMENTS... [--page docs/generated/numerics.md] [--lens NAME ...]
 
-The tests append their figures, a line of JSON each, to the file that the environment variable REALCAM_MEASUREMENTS
-names. Files of several machines make one page, because no machine has all backends and instruction sets. Of a case that
-several have, the figure nearest to its limit counts. The page is written only where all of them hold: one past its
-limit, or a broken routine that stays within one, is an error. The plot is measured anew, with the rays of
+The tests append their measurements, a line of JSON each, to the file named by the environment variable
+REALCAM_MEASUREMENTS. Files of several machines make one page, because no machine has all backends and instruction sets;
+if several have measured a case, the measurement closest to its limit counts. It is an error if a measurement exceeds
+its limit, or if that of an intentionally broken routine does not. The plot is measured again, with the rays of
 tests/truth/test_float32_error.py.
 """
 
@@ -63,6 +63,7 @@ for the real ones.
 
 
 def escaped(text: str) -> str:
+    """Text for a Markdown table."""
     return html.escape(text, quote=False).replace("|", "\\|").replace("*", "\\*")
 
 
@@ -71,7 +72,7 @@ def table(head: list[str], rows: list[list[str]]) -> str:
 
 
 def tried(figures: list[Figure]) -> str:
-    """What was tried on all backends: once where it differs in nothing but the number of rays."""
+    """Descriptions of the measurements on all backends, without those that differ only in numbers."""
     texts = {}
     for figure in figures:
         text = figure.measurement.tried + (f", the worst of {figure.runs}" if figure.runs > 1 else "")
@@ -80,7 +81,7 @@ def tried(figures: list[Figure]) -> str:
 
 
 def column(number_type: str, backends: tuple[str, ...]) -> str:
-    """`float32`, `float32, CUDA` or `float32, CUDA · Embree v2 · v3`."""
+    """Head of a column: `float32`, `float32, CUDA` or `float32, CUDA · Embree v2 · v3`."""
     if backends == ("core",):
         return number_type
     names = list(backends)
@@ -92,11 +93,13 @@ def column(number_type: str, backends: tuple[str, ...]) -> str:
 
 
 def short(number: float, digits: int = 6) -> str:
+    """Number with this many significant digits, for the page."""
     text = f"{number:.{digits}g}".replace("nan", "NaN").replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
     return text.replace("-", "\N{MINUS SIGN}")  # a browser breaks the line after a hyphen
 
 
-def on_all(texts: list[str]) -> str:
+def merged(texts: list[str]) -> str:
+    """The texts of all backends, or the only one if they are equal."""
     return SEPARATOR.join(texts[:1] if len(set(texts)) == 1 else texts)
 
 
@@ -106,7 +109,7 @@ def cell(figures: dict[str, Figure], backends: tuple[str, ...]) -> str:
         return ""
     errors = [short(figures[b].measurement.worst, 2) if b in figures else "–" for b in backends]
     limits = [short(figures[b].measurement.limit) for b in backends if b in figures]
-    return f"{on_all(errors)}{LIMIT}{on_all(limits)}"
+    return f"{merged(errors)}{LIMIT}{merged(limits)}"
 
 
 def grouped_by(figures: list[Figure], key: Callable[[Figure], object]) -> dict:
@@ -116,8 +119,8 @@ def grouped_by(figures: list[Figure], key: Callable[[Figure], object]) -> dict:
     return groups
 
 
-def held_tables(figures: list[Figure]) -> str:
-    """A table for all cases that were tried on the same backends."""
+def case_tables(figures: list[Figure]) -> str:
+    """Tables of the cases, one for each set of backends on which cases were measured."""
     cases = grouped_by(figures, lambda f: (f.measurement.what, f.measurement.unit))
     tables: dict[tuple[str, ...], list[tuple[str, str]]] = {}
     for case in sorted(cases):
@@ -136,6 +139,7 @@ def held_tables(figures: list[Figure]) -> str:
 
 
 def broken_table(figures: list[Figure]) -> str:
+    """Table of the intentionally broken routines."""
     rows = []
     for figure in sorted(figures, key=lambda f: measurements.SECTIONS.index(f.measurement.section)):
         m = figure.measurement
@@ -145,6 +149,7 @@ def broken_table(figures: list[Figure]) -> str:
 
 
 def run_text(figures: list[Figure], runs: list[Run]) -> str:
+    """Paragraph on the runs and the measurement closest to its limit."""
     nearest = max((f for f in figures if not f.broken), key=lambda f: f.share_of_limit)
     return (
         "The figures are of these runs:\n\n"
@@ -155,12 +160,13 @@ def run_text(figures: list[Figure], runs: list[Run]) -> str:
 
 
 def page(figures: list[Figure], runs: list[Run], plot_text: str) -> str:
+    """The page as Markdown."""
     figures = measurements.grouped(figures)
     parts = [INTRODUCTION, run_text(figures, runs)]
     for section in measurements.SECTIONS:
         held = [f for f in figures if f.measurement.section == section and not f.broken]
         if held:
-            parts += [f"## {section}\n", *([plot_text] if section == "Bundled lenses" else []), held_tables(held)]
+            parts += [f"## {section}\n", *([plot_text] if section == "Bundled lenses" else []), case_tables(held)]
     broken = [f for f in figures if f.broken]
     if broken:
         parts += [BROKEN, broken_table(broken)]
@@ -169,16 +175,20 @@ def page(figures: list[Figure], runs: list[Run], plot_text: str) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("measurements", type=Path, nargs="+", help="what the tests wrote, a file for each machine")
-    parser.add_argument("--page", type=Path, default=PAGE, help="the plot goes into images/ beside it")
-    parser.add_argument("--lens", action="append", help="plot this one only; may be repeated")
+    parser.add_argument(
+        "measurements", type=Path, nargs="+", help="files that the tests have written, one for each machine"
+    )
+    parser.add_argument(
+        "--page", type=Path, default=PAGE, help="page to write; its plot is written into the folder images beside it"
+    )
+    parser.add_argument("--lens", action="append", help="plot only this lens; may be repeated")
     options = parser.parse_args()
     try:
         read = [measurements.read(path) for path in options.measurements]
     except measurements.MeasurementError as error:
         raise SystemExit(f"write_numerics: {error}") from error
-    figures = [figure for of_file, _ in read for figure in of_file]
-    runs = list(dict.fromkeys(run for _, of_file in read for run in of_file))
+    figures = [figure for file_figures, _ in read for figure in file_figures]
+    runs = list(dict.fromkeys(run for _, file_runs in read for run in file_runs))
     count = numerics_plot.save_error_plot(options.lens or CENTRED, options.page.parent / PLOT)
     options.page.write_text(page(figures, runs, PLOT_TEXT.format(plot=PLOT.as_posix(), count=count)), encoding="utf-8")
 

@@ -1,4 +1,4 @@
-"""How a lens images: each aberration as arrays with units, and as a plot.
+"""Image quality of a lens: each aberration as arrays with units, and as a plot.
 
 import realcam as rc
 from matplotlib.figure import Figure
@@ -9,7 +9,8 @@ rc.analysis.plot_ray_fan(fans, Figure().add_subplot(), field=1)
 
 Each analysis has a function that computes and one that plots on matplotlib axes. By default fields go from the axis to
 the corner of the film, wavelengths are the F line, the design wavelength and the C line, and the object is in the
-plane in focus.
+plane in focus. KINDS holds all plots by their names on the command line, for plot_figure(); as_json() and
+save_numbers() export the arrays of any result; new figures within themed() have a theme's colours.
 """
 
 from ..drawing.figure_files import save_figure

@@ -16,7 +16,9 @@ from .fields import Bundles, Doubles, three_fields, wavelengths_of
 
 @dataclass(frozen=True, repr=False)
 class Bokeh(ShortText):
-    """fields_deg: (F,); object_distance_m: object plane to front vertex.
+    """Images of a point out of focus at F fields and W wavelengths.
+
+    fields_deg: (F,); object_distance_m: object plane to front vertex.
     values_per_mm2: (F, W, N, N), fraction of each wavelength's light per mm^2 of the film, rows from the lowest y;
     centred on the disc of the design wavelength. pitch_mm: sample spacing of all images.
     """
@@ -40,8 +42,8 @@ def bokeh(
     """Images of a point out of focus by geometric ray density. Raises InputError if the point is in focus.
 
     object_distance_m: None is infinity for a lens that is focused nearer, and thirty focal lengths for one that is
-    focused on infinity. fields_deg: None is the axis, 0.7 and 1 times the largest image height. wavelengths_nm: None is
-    F line, design wavelength, C line.
+    focused on infinity. size: samples along each side of an image; rays: number of rays for each. fields_deg: None is
+    the axis, 0.7 and 1 times the largest image height. wavelengths_nm: None is F line, design wavelength, C line.
     """
     distance = _out_of_focus_m(lens) if object_distance_m is None else object_distance_m
     source = Bundles(lens, distance)
@@ -51,7 +53,7 @@ def bokeh(
     boxes = [(b.points_mm.min(axis=0), b.points_mm.max(axis=0)) for b in design]
     side = 1.15 * max(float((high - low).max()) for low, high in boxes)
     if not side > 0:
-        raise InputError(f"an object at {distance:.6g} m is in focus: its light makes no disc")
+        raise InputError(f"an object at {distance:.6g} m is in focus, so that its image is no disc")
     values = np.empty((len(fields), len(colours), size, size))
     for f, field in enumerate(fields):
         corner = 0.5 * (boxes[f][0] + boxes[f][1]) - 0.5 * side
@@ -65,6 +67,7 @@ def bokeh(
 
 
 def _out_of_focus_m(lens: Lens) -> float:
+    """Default object distance."""
     if math.isfinite(lens.focus_distance_m):
         return math.inf
     return 30e-3 * abs(lens.first_order().effective_focal_length_mm)

@@ -64,14 +64,14 @@ def depth_over_focus(
     if focus_m is None:
         thin = ThinLens.of(lenses[int(np.argmin(stops))])
         nearest = max(lens.nearest_focus_m, 12e-3 * thin.focal_length_mm)
-        places: Doubles = np.geomspace(nearest, max(1e-3 * thin.hyperfocal_mm(circle), 4 * nearest), samples)
+        distances: Doubles = np.geomspace(nearest, max(1e-3 * thin.hyperfocal_mm(circle), 4 * nearest), samples)
     else:
-        places = numbers_of(focus_m, "focus_m")
-    result = np.full((5, len(stops), len(places)), np.nan)
+        distances = numbers_of(focus_m, "focus_m")
+    result = np.full((5, len(stops), len(distances)), np.nan)
     for n, stopped in enumerate(lenses):
-        for d, place in enumerate(places):
+        for d, distance in enumerate(distances):
             try:
-                focused = stopped.focused(float(place))
+                focused = stopped.focused(float(distance))
             except InputError:  # outside the focus range of the lens
                 continue
             real, formula = sharp_ranges(focused, circle)
@@ -79,9 +79,9 @@ def depth_over_focus(
             with contextlib.suppress(InputError):  # no light passes
                 result[4, n, d] = blur_diameter_mm(focused)
     if np.isnan(result[2:4]).all():
-        raise InputError(f'lens "{lens.name}" can be focused at none of these distances')
+        raise InputError(f'lens "{lens.name}" cannot be focused at any of these distances')
     near, far, formula_near, formula_far, blur_in_focus = result
-    return DepthOverFocus(places, stops, near, far, formula_near, formula_far, blur_in_focus, circle)
+    return DepthOverFocus(distances, stops, near, far, formula_near, formula_far, blur_in_focus, circle)
 
 
 def plot_depth_over_focus(data: DepthOverFocus, axes: Axes) -> None:
@@ -133,21 +133,25 @@ def _ranges(positions_m: Doubles, is_in: NDArray[np.bool_]) -> str:
     """Text of the intervals of consecutive distances for which is_in is True."""
     order = np.argsort(positions_m)
     found = np.flatnonzero(is_in[order])
-    stretches = np.split(positions_m[order][found], np.flatnonzero(np.diff(found) > 1) + 1)
-    ends = (dict.fromkeys(f"{stretch[end]:.3g}" for end in (0, -1)) for stretch in stretches)
+    intervals = np.split(positions_m[order][found], np.flatnonzero(np.diff(found) > 1) + 1)
+    ends = (dict.fromkeys(f"{interval[end]:.3g}" for end in (0, -1)) for interval in intervals)
     return " and ".join(f"{' to '.join(texts)} m" for texts in ends)
 
 
 def _between(focus_m: Doubles, edge_m: Doubles, fine_m: Doubles) -> Doubles:
-    """Interpolates a limit of the sharp range between focus distances. Inverse distances are nearly linear in each
-    other, which also extrapolates the focus distance at which the limit reaches infinity."""
+    """Interpolates a limit of the sharp range, edge_m, from the focus distances focus_m to fine_m.
+
+    Inverse distances are nearly linear in each other, which also extrapolates the focus distance at which the limit
+    reaches infinity.
+    """
     order = np.argsort(-focus_m)
-    places, inverse = 1 / focus_m[order], 1 / edge_m[order]
-    known = np.flatnonzero(inverse > 0)[:2]  # the two nearest to infinity
-    if len(known) == 2:
-        slope, start = np.polyfit(places[known], inverse[known], 1)
-        inverse = np.where(inverse == 0, np.minimum(start + slope * places, 0), inverse)
-    found = np.interp(1 / fine_m, places, inverse)
+    inverse_focus, inverse_edge = 1 / focus_m[order], 1 / edge_m[order]
+    finite = np.flatnonzero(inverse_edge > 0)[:2]  # the two nearest to infinity
+    if len(finite) == 2:
+        slope, start = np.polyfit(inverse_focus[finite], inverse_edge[finite], 1)
+        # Inverse limits below 0, beyond infinity, in place of 0.
+        inverse_edge = np.where(inverse_edge == 0, np.minimum(start + slope * inverse_focus, 0), inverse_edge)
+    interpolated = np.interp(1 / fine_m, inverse_focus, inverse_edge)
     with np.errstate(divide="ignore"):
-        edges: Doubles = np.where(found <= 0, np.inf, 1 / found)
+        edges: Doubles = np.where(interpolated <= 0, np.inf, 1 / interpolated)
     return edges

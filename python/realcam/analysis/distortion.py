@@ -18,7 +18,9 @@ PROJECTIONS = ("tangent", "angle")
 
 @dataclass(frozen=True, repr=False)
 class Distortion(ShortText):
-    """fields_deg: (F,); real_mm, paraxial_mm: (F,), heights of the chief ray on the film.
+    """Distortion over the field.
+
+    fields_deg: (F,); real_mm, paraxial_mm: (F,), heights of the chief ray on the film.
     percent: (F,), 100 (real / paraxial - 1); 0, its limit, on the axis.
     projection: the paraxial height is proportional to the "tangent" of the field angle or to the "angle" (f-theta).
     """
@@ -57,27 +59,32 @@ def distortion(
 
     film_distance_mm: last vertex to that plane, None is the film; first_order().back_focal_distance_mm is the paraxial
     focus of infinity. projection: None is "tangent" for fields up to 60 degrees, and "angle" for larger ones, because
-    tangents diverge at 90. Other defaults: `samples` fields up to the corner of the film; the design wavelength; the
-    plane in focus. Raises InputError for "tangent" from 90 degrees on.
+    tangents diverge at 90.
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
+    Other defaults: `samples` fields from the axis to the film's corner; the design wavelength.
+    Raises InputError for "tangent" from 90 degrees on.
     """
     source = bundles_of(lens, object_distance_m, bundles)
     fields = fields_of(lens, fields_deg, samples, source)
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
-    way = projection or ("tangent" if float(np.abs(fields).max()) <= 60 else "angle")
-    if way not in PROJECTIONS:
-        raise InputError(f'unknown projection "{way}"; expected tangent or angle')
-    if way == "tangent" and float(np.abs(fields).max()) >= 90:
-        raise InputError('the projection "tangent" has no picture at 90 deg and beyond; use "angle"')
+    kind = projection or ("tangent" if float(np.abs(fields).max()) <= 60 else "angle")
+    if kind not in PROJECTIONS:
+        raise InputError(f'unknown projection "{kind}"; expected tangent or angle')
+    if kind == "tangent" and float(np.abs(fields).max()) >= 90:
+        raise InputError('the projection "tangent" is not defined at 90 deg and beyond; use "angle"')
     plane = lens.film_distance_mm if film_distance_mm is None else film_distance_mm
     real = np.array([_height_at(source, float(field), nm, plane) for field in fields])
     angle = np.radians(fields)
-    paraxial = paraxial_height_mm(source, nm, plane) * (np.tan(angle) if way == "tangent" else angle)
+    paraxial = paraxial_height_mm(source, nm, plane) * (np.tan(angle) if kind == "tangent" else angle)
     with np.errstate(invalid="ignore", divide="ignore"):
         percent = np.where(fields == 0, 0.0, 100 * (real - paraxial) / paraxial)
-    return Distortion(fields, real, paraxial, percent, way)
+    return Distortion(fields, real, paraxial, percent, kind)
 
 
 def _height_at(source: Bundles, field_deg: float, wavelength_nm: float, film_distance_mm: float) -> float:
+    """Height of the real chief ray, mm, in the plane at this distance from the last vertex. Raises InputError if no
+    light passes."""
     if film_distance_mm == source.lens.film_distance_mm:
         return source.chief(field_deg, wavelength_nm).chief_ray_mm[1]
     bundle = source.lens.bundle(
@@ -106,14 +113,17 @@ def distortion_grid(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> DistortionGrid:
-    """A grid that covers the film in the paraxial image, and its image by real chief rays.
+    """Computes a grid of lines x lines nodes that covers the film in the paraxial image, and its real image.
 
+    Defaults as for distortion().
     Raises InputError if the film's corner is at 80 degrees or more: no plane grid fills the picture.
     """
     source = bundles_of(lens, object_distance_m, bundles)
     curve = distortion(lens, wavelength_nm=wavelength_nm, samples=15, bundles=source)
     if curve.fields_deg.max() >= 80:
-        raise InputError("no plane grid fills the picture of a lens that sees 80 deg and more from the axis")
+        raise InputError(
+            "a plane grid cannot fill the picture of a lens whose field extends to 80 deg or more from the axis"
+        )
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
     scale = paraxial_height_mm(source, nm, lens.film_distance_mm)
     paraxial = np.abs(scale) * np.tan(np.radians(curve.fields_deg))
@@ -125,12 +135,13 @@ def distortion_grid(
     ratio[1:] = np.abs(curve.real_mm[1:]) / paraxial[1:]
     top = paraxial[-1] ** 2
     fit = np.polynomial.Chebyshev.fit(paraxial[1:] ** 2, ratio[1:], min(6, len(paraxial) - 2), domain=(0, top))
-    stretched = np.where(radius**2 <= 1.002 * top, fit(np.minimum(radius**2, top)), np.nan)
+    node_ratio = np.where(radius**2 <= 1.002 * top, fit(np.minimum(radius**2, top)), np.nan)
     ideal = np.stack([x, y], axis=-1)
-    return DistortionGrid(ideal, ideal * stretched[..., None])
+    return DistortionGrid(ideal, ideal * node_ratio[..., None])
 
 
 def plot_distortion(data: Distortion, axes: Axes) -> None:
+    """Plots distortion in percent, with the field upwards."""
     axes.plot(data.percent, data.fields_deg, color=style.GREEN)
     style.field_upwards(axes, data.fields_deg)
     against = "f tan θ" if data.projection == "tangent" else "f θ"
@@ -141,9 +152,10 @@ def plot_distortion(data: Distortion, axes: Axes) -> None:
 
 
 def plot_distortion_grid(grid: DistortionGrid, axes: Axes) -> None:
+    """Plots the paraxial and the real image of the grid in film coordinates."""
     for lines, colour, label in ((grid.ideal_mm, style.GREY, "paraxial"), (grid.real_mm, style.RED, "real")):
-        for way in (lines, lines.swapaxes(0, 1)):
-            for line in way:
+        for family in (lines, lines.swapaxes(0, 1)):
+            for line in family:
                 axes.plot(line[:, 0], line[:, 1], color=colour, linewidth=0.7, label=label)
                 label = "_nolegend_"
     axes.set_aspect("equal")

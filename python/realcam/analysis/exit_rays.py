@@ -15,7 +15,9 @@ from .fields import Doubles
 
 @dataclass(frozen=True, repr=False)
 class ExitRays(ShortText):
-    """points_mm: (N, 2), on the film, from the axis; nan for rays that do not pass.
+    """N rays behind a lens.
+
+    points_mm: (N, 2), on the film, from the axis; nan for rays that do not pass.
     slopes: (N, 2), dx/dz and dy/dz behind the lens.
     cosines: (N, 2), direction cosines x and y.
     """
@@ -37,7 +39,11 @@ def exit_rays(
     wavelength_nm: float,
     object_distance_m: float | None = None,
 ) -> ExitRays:
-    """Rays through points of the stop, (N, 2) in units of its radius, found by real ray aiming."""
+    """Rays through points of the stop, found by real ray aiming.
+
+    pupil: (N, 2), points in units of the stop's radius. object_distance_m: object plane to front vertex; None: the
+    plane in focus. Raises InputError if no light passes.
+    """
     spot = lens.spot(
         **field_arguments(field), wavelength_nm=wavelength_nm, object_distance_m=object_distance_m, pupil=pupil
     )

@@ -11,12 +11,14 @@ from numpy.typing import ArrayLike
 from .._core import InputError, Lens
 from ..short_text import ShortText
 from . import style
-from .fields import Bundles, Doubles, light_of
+from .fields import Bundles, Doubles, analysis_inputs
 
 
 @dataclass(frozen=True, repr=False)
 class FieldCurves(ShortText):
-    """fields_deg: (F,); wavelengths_nm: (W,).
+    """Tangential and sagittal foci over F fields at W wavelengths, and the Petzval surface.
+
+    fields_deg: (F,); wavelengths_nm: (W,).
     tangential_mm, sagittal_mm: (W, F), foci of real rays close to the chief ray, along the axis, behind the film.
     petzval_mm: (F,), Petzval surface at the design wavelength, to third order; nan for afocal lenses, and from 90
       degrees on.
@@ -38,9 +40,14 @@ def field_curves(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> FieldCurves:
-    """Computes field curves. Defaults: `samples` fields up to the film corner; design wavelength; plane in focus."""
-    wanted = lens.wavelength_nm if wavelengths_nm is None else wavelengths_nm
-    source, fields, colours = light_of(lens, fields_deg, wanted, object_distance_m, bundles, samples)
+    """Computes field curves.
+
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
+    Other defaults: `samples` fields from the axis to the film's corner; the design wavelength.
+    """
+    wavelengths = lens.wavelength_nm if wavelengths_nm is None else wavelengths_nm
+    source, fields, colours = analysis_inputs(lens, fields_deg, wavelengths, object_distance_m, bundles, samples)
     light = [[source.chief(float(field), float(colour)) for field in fields] for colour in colours]
     return FieldCurves(
         fields,
@@ -52,7 +59,8 @@ def field_curves(
 
 
 def _petzval_mm(source: Bundles, field_deg: float) -> float:
-    """Position of the Petzval surface behind the film, at the paraxial chief ray's height, mm."""
+    """Position of the Petzval surface behind the film, at the paraxial chief ray's height, mm; nan if it is
+    undefined."""
     lens = source.lens
     try:
         sums = lens.seidel(field_deg, object_distance_m=source.object_distance_m)
@@ -65,10 +73,11 @@ def _petzval_mm(source: Bundles, field_deg: float) -> float:
 
 
 def plot_field_curves(curves: FieldCurves, axes: Axes) -> None:
+    """Plots the foci in mm behind the film, with the field upwards."""
     for w, (colour, label) in enumerate(style.coloured(curves.wavelengths_nm)):
-        beside = f", {label}" if len(curves.wavelengths_nm) > 1 else ""
-        axes.plot(curves.tangential_mm[w], curves.fields_deg, color=colour, label=f"tangential{beside}")
-        axes.plot(curves.sagittal_mm[w], curves.fields_deg, "--", color=colour, label=f"sagittal{beside}")
+        suffix = f", {label}" if len(curves.wavelengths_nm) > 1 else ""
+        axes.plot(curves.tangential_mm[w], curves.fields_deg, color=colour, label=f"tangential{suffix}")
+        axes.plot(curves.sagittal_mm[w], curves.fields_deg, "--", color=colour, label=f"sagittal{suffix}")
     axes.plot(curves.petzval_mm, curves.fields_deg, ":", color=style.GREY, label="Petzval")
     style.field_upwards(axes, curves.fields_deg)
     shown = np.concatenate([curves.tangential_mm.ravel(), curves.sagittal_mm.ravel()])

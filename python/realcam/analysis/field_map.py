@@ -38,9 +38,11 @@ class FieldMap(ShortText):
 
 @dataclass(frozen=True)
 class _Quantity:
-    title: str
+    title: str  #: of the plot
     unit: str
-    of: Callable[[Bundles, Point, float, float], float]
+    #: Value at a film point, from the bundles, the point, the wavelength in nm, and the frequency in periods per mm.
+    #: Raises InputError without light.
+    compute: Callable[[Bundles, Point, float, float], float]
 
 
 def _spot(source: Bundles, point: Point, nm: float, _: float) -> float:
@@ -69,11 +71,13 @@ def _mtf_along(axis: int) -> Callable[[Bundles, Point, float, float], float]:
 
 QUANTITIES = {
     "spot": _Quantity("RMS radius of the spot", "µm", _spot),
-    "wavefront": _Quantity("RMS of the wavefront", "waves", _wavefront),
+    "wavefront": _Quantity("RMS wavefront error", "waves", _wavefront),
     "mtf-x": _Quantity("contrast of a pattern along x", "", _mtf_along(1)),
     "mtf-y": _Quantity("contrast of a pattern along y", "", _mtf_along(0)),
-    "illumination": _Quantity("illumination, of that in the middle", "%", _illumination),
-    "distortion": _Quantity("distortion, of half the film's diagonal", "%", lambda *_: np.nan),
+    "illumination": _Quantity("illumination, relative to the film's centre", "%", _illumination),
+    "distortion": _Quantity(
+        "distortion, relative to half the film's diagonal", "%", lambda *_: np.nan
+    ),  # by _distortion
 }
 
 
@@ -90,7 +94,9 @@ def field_map(
     """A map of one of QUANTITIES over the film, whatever symmetry the lens has.
 
     points: number along x and y, up to the film's edges. frequency_per_mm: of mtf-x and mtf-y; None is 20 for a film
-    diagonal of 43 mm, scaled inversely for others. Other defaults: the design wavelength; the plane in focus.
+    diagonal of 43 mm, scaled inversely for others. wavelength_nm: None is the design wavelength.
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
     Distortion is relative to the perspective picture that matches the lens's first order at the film's centre in both
     directions; for an anamorphic lens that picture is squeezed. Raises InputError.
     """
@@ -102,25 +108,27 @@ def field_map(
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
     frequency = float(default_frequencies_per_mm(lens)[1]) if frequency_per_mm is None else frequency_per_mm
     x, y = (half * np.linspace(-1, 1, n) for half, n in zip(0.5 * np.array(lens.film_mm), points, strict=True))
-    what, vectors = QUANTITIES[quantity], None
+    vectors = None
     if quantity == "distortion":
         vectors = _distortion(lens, x, y)
         values = 100 * np.hypot(*np.moveaxis(vectors, 2, 0)) / (0.5 * np.hypot(*lens.film_mm))
     else:
-        values = np.array([[_or_nan(what.of, source, (float(a), float(b)), nm, frequency) for a in x] for b in y])
+        values = np.array(
+            [[_or_nan(QUANTITIES[quantity].compute, source, (float(a), float(b)), nm, frequency) for a in x] for b in y]
+        )
     if quantity == "illumination":
         values = 100 * values / lens.film_pupil((0.0, 0.0), nm).irradiance
     if np.isnan(values).all():
-        raise InputError(f'no light reaches the points of the film of lens "{lens.name}"')
-    of_mtf = frequency if quantity.startswith("mtf") else None
-    return FieldMap(quantity, what.unit, x, y, values, vectors, of_mtf)
+        raise InputError(f'no light of lens "{lens.name}" reaches any of the film points')
+    mtf_frequency = frequency if quantity.startswith("mtf") else None
+    return FieldMap(quantity, QUANTITIES[quantity].unit, x, y, values, vectors, mtf_frequency)
 
 
 def _or_nan(
-    value: Callable[[Bundles, Point, float, float], float], source: Bundles, point: Point, nm: float, frequency: float
+    compute: Callable[[Bundles, Point, float, float], float], source: Bundles, point: Point, nm: float, frequency: float
 ) -> float:
     try:
-        return value(source, point, nm, frequency)
+        return compute(source, point, nm, frequency)
     except InputError:  # outside the illuminated field
         return np.nan
 
@@ -143,6 +151,7 @@ def _tangents(lens: Lens, point: Point) -> Doubles:
 
 
 def _distortion(lens: Lens, x: Doubles, y: Doubles) -> Doubles:
+    """(Y, X, 2), mm: displacements of the chief rays' film points, as FieldMap.vectors_mm; nan without light."""
     step = 1e-4 * float(np.hypot(*lens.film_mm))
     by_x, by_y = (
         (_tangents(lens, (step * (1 - k), step * k)) - _tangents(lens, (-step * (1 - k), -step * k))) / (2 * step)
@@ -167,11 +176,11 @@ def plot_field_map(data: FieldMap, axes: Axes) -> None:
     bar = figure.colorbar(mesh, ax=axes, shrink=0.8)
     bar.set_label(data.unit)
     if data.vectors_mm is not None:
-        bent = np.stack(np.meshgrid(data.x_mm, data.y_mm), axis=-1)
-        straight = bent - data.vectors_mm
-        for lines, colour in ((straight, style.GREY), (bent, "white")):
-            for way in (lines, lines.swapaxes(0, 1)):
-                for line in way:
+        distorted = np.stack(np.meshgrid(data.x_mm, data.y_mm), axis=-1)
+        ideal = distorted - data.vectors_mm
+        for lines, colour in ((ideal, style.GREY), (distorted, "white")):
+            for family in (lines, lines.swapaxes(0, 1)):
+                for line in family:
                     axes.plot(line[:, 0], line[:, 1], color=colour, linewidth=0.7)
     axes.set_aspect("equal")
     axes.grid(visible=False)

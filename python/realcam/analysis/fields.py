@@ -13,7 +13,7 @@ from .._core import InputError, Lens, RayBundle
 from ..fields import FieldPosition, field_arguments
 
 Doubles = NDArray[np.float64]
-LINE_F_NM, LINE_D_NM, LINE_C_NM = 486.1327, 587.5618, 656.2725
+LINE_F_NM, LINE_D_NM, LINE_C_NM = 486.1327, 587.5618, 656.2725  # Fraunhofer lines
 
 
 class Bundles:
@@ -25,23 +25,24 @@ class Bundles:
     def __init__(self, lens: Lens, object_distance_m: float | None = None) -> None:
         self.lens = lens
         self.object_distance_m = object_distance_m
-        self._kept: dict[tuple[FieldPosition, float, int, int], RayBundle] = {}
+        self._bundles: dict[tuple[FieldPosition, float, int, int], RayBundle] = {}
 
     def at(self, field: FieldPosition, wavelength_nm: float, arms: int = 32, nodes: int = 6) -> RayBundle:
-        """Ray bundle of a field point. Raises InputError if no light passes."""
+        """Ray bundle of a field point, with `arms` radial scan lines of `nodes` rays. Raises InputError if no light
+        passes."""
         key = (field, float(wavelength_nm), arms, nodes)
-        if key not in self._kept:
-            self._kept[key] = self.lens.bundle(
+        if key not in self._bundles:
+            self._bundles[key] = self.lens.bundle(
                 **field_arguments(field),
                 wavelength_nm=key[1],
                 object_distance_m=self.object_distance_m,
                 arms=arms,
                 nodes=nodes,
             )
-        return self._kept[key]
+        return self._bundles[key]
 
     def chief(self, field: FieldPosition, wavelength_nm: float) -> RayBundle:
-        """A small ray bundle, sufficient for chief-ray data."""
+        """Smallest ray bundle of a field point, sufficient for chief-ray data. Raises InputError if no light passes."""
         return self.at(field, wavelength_nm, 8, 2)
 
     @cached_property
@@ -55,7 +56,7 @@ def bundles_of(lens: Lens, object_distance_m: float | None, bundles: Bundles | N
     if bundles is None:
         return Bundles(lens, object_distance_m)
     if bundles.lens != lens or (object_distance_m is not None and bundles.object_distance_m != object_distance_m):
-        raise InputError("bundles are of another lens, or of another object distance")
+        raise InputError("bundles must have been made for this lens and object distance")
     return bundles
 
 
@@ -68,11 +69,11 @@ def wavelengths_of(lens: Lens, wavelengths_nm: ArrayLike | None) -> Doubles:
     return np.array([LINE_F_NM, design, LINE_C_NM] if LINE_F_NM < design < LINE_C_NM else [design])
 
 
-def numbers_of(values: ArrayLike, what: str) -> Doubles:
-    """A one-dimensional array of finite numbers, at least one. Raises InputError."""
+def numbers_of(values: ArrayLike, name: str) -> Doubles:
+    """Returns a one-dimensional array of at least one finite number. Raises InputError with the argument's name."""
     array = np.atleast_1d(np.asarray(values, dtype=float))
     if array.ndim != 1 or array.size == 0 or not np.isfinite(array).all():
-        raise InputError(f"{what} must be finite numbers, at least one")
+        raise InputError(f"{name} must be finite numbers, at least one")
     return array
 
 
@@ -102,14 +103,14 @@ def three_of(values: Sequence[float], middle: float | None = None) -> Doubles:
 
 
 def film_points_of(film_mm: ArrayLike) -> list[FieldPosition]:
-    """(x, y) of each of (F, 2) film points. Raises InputError."""
+    """Returns F pairs (x, y), mm, of an array of film points (F, 2). Raises InputError."""
     points = np.asarray(film_mm, dtype=float)
     if points.ndim != 2 or points.shape[1] != 2 or points.size == 0 or not np.isfinite(points).all():
-        raise InputError("film_mm must be film points, (x, y) in mm, at least one")
+        raise InputError("film_mm must be at least one film point, (x, y) in mm")
     return [(float(x), float(y)) for x, y in points]
 
 
-def light_of(
+def analysis_inputs(
     lens: Lens,
     fields_deg: ArrayLike | None,
     wavelengths_nm: ArrayLike | None,
@@ -127,20 +128,21 @@ def light_of(
 
 
 def field_angles_deg(lens: Lens, shares: ArrayLike, bundles: Bundles | None = None) -> Doubles:
-    """(F,): angles whose chief rays reach fractions of the largest image height.
+    """(F,): field angles whose chief rays reach fractions of the largest image height.
 
-    The largest image height is half the film's diagonal. If the illuminated field is smaller, it is that of 0.99 times
-    the angle of its edge, because at the edge itself the pupil is a sliver that few rays find.
+    shares: (F,), the fractions, 0 to 1. The largest image height is half the film's diagonal. If the illuminated field
+    is smaller, it is that of 0.99 times the angle of its edge, because at the edge itself the pupil is a sliver that
+    few rays find. Raises InputError if no axial light passes the lens.
     """
     source = bundles or Bundles(lens)
     largest = source.largest_field_deg
-    top = _height_mm(source, largest)
-    shares_array = numbers_of(shares, "shares")
+    largest_mm = _height_mm(source, largest)
+    fractions = numbers_of(shares, "shares")
     # The chief ray's height is a smooth function of the angle: nine samples suffice for interpolation.
     angles = largest * np.linspace(0, 1, 9)
     heights = np.array([0.0 if a == 0 else _height_mm(source, a) for a in angles])
-    found: Doubles = np.interp(shares_array * top, heights, angles)
-    return found
+    fields: Doubles = np.interp(fractions * largest_mm, heights, angles)
+    return fields
 
 
 def _height_mm(bundles: Bundles, field_deg: float) -> float:
@@ -158,10 +160,14 @@ def _height_mm(bundles: Bundles, field_deg: float) -> float:
 
 
 def _largest_field_deg(lens: Lens, bundles: Bundles) -> float:
-    """Field angle of the corner within 0.1% of its height, or 0.99 times the angle at which the light ends."""
+    """Field angle of the film's corner within 0.1% of its height, or 0.99 times the angle at which the light ends.
+
+    Regula falsi between the bounds `low` and `high`; a dark upper bound has no height, and is bisected. Raises
+    InputError if no axial light passes.
+    """
     corner = 0.5 * math.hypot(*lens.film_mm)
     if math.isnan(_height_mm(bundles, 0.0)):
-        raise InputError(f'no light of the axis passes lens "{lens.name}"')
+        raise InputError(f'no axial light passes lens "{lens.name}"')
     focal = abs(lens.first_order().effective_focal_length_mm)
     low, low_height = 0.0, 0.0
     high, high_height = 180.0, math.nan
@@ -178,11 +184,11 @@ def _largest_field_deg(lens: Lens, bundles: Bundles) -> float:
             break
         if math.isnan(high_height):
             # No upper height yet: extrapolate linearly from the axis, or bisect towards the dark end.
-            ahead = low * corner / low_height * 1.001 if low_height > 0 else math.inf
-            guess = ahead if low < ahead < high else 0.5 * (low + high)
+            extrapolated = low * corner / low_height * 1.001 if low_height > 0 else math.inf
+            guess = extrapolated if low < extrapolated < high else 0.5 * (low + high)
         else:
-            share = (corner - low_height) / (high_height - low_height)
-            guess = low + min(max(share, 0.02), 0.98) * (high - low)
+            fraction = (corner - low_height) / (high_height - low_height)
+            guess = low + min(max(fraction, 0.02), 0.98) * (high - low)
     return 0.99 * low
 
 
@@ -194,10 +200,11 @@ def default_frequencies_per_mm(lens: Lens) -> Doubles:
 
 
 def _round_number(value: float) -> float:
+    """The nearest 1, 2, 4 or 5 times a power of ten, by ratio."""
     power = 10.0 ** math.floor(math.log10(value))
     return float(min((1, 2, 4, 5, 10), key=lambda step: abs(math.log(step * power / value)))) * power
 
 
 def texts_of(values: Sequence[float] | Doubles, unit: str) -> list[str]:
-    """Values with a unit, for legends."""
+    """Texts of values with their unit, for legends; no space before a degree sign."""
     return [f"{value:.4g}{'' if unit == '°' else ' '}{unit}" for value in values]

@@ -44,7 +44,9 @@ def film_pupils(
 ) -> FilmPupils:
     """Pupils by real rays from the film to the scene: their edges along radial scan lines about the pupil's centre.
 
-    Defaults: `samples` fields up to the corner of the film; the design wavelength. Coatings are ignored.
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
+    Other defaults: `samples` fields from the axis to the film's corner; the design wavelength. Coatings are ignored.
     """
     source = bundles_of(lens, object_distance_m, bundles)
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
@@ -76,9 +78,9 @@ def plot_pupil_shapes(data: FilmPupils, axes: Axes) -> None:
     boxes = [(o.reshape(-1, 2).min(axis=0), o.reshape(-1, 2).max(axis=0)) for o in data.outlines]
     widest = max(float((high - low).max()) for low, high in boxes)
     for k, (outline, (low, high)) in enumerate(zip(data.outlines, boxes, strict=True)):
-        away = np.array([1.15 * widest * k, 0.0]) - 0.5 * (low + high)
+        offset = np.array([1.15 * widest * k, 0.0]) - 0.5 * (low + high)
         axes.add_collection(
-            LineCollection(list(outline + away), colors=style.field_colour(k), linewidths=1.2, capstyle="round")
+            LineCollection(list(outline + offset), colors=style.field_colour(k), linewidths=1.2, capstyle="round")
         )
         axes.annotate(f"{data.fields_deg[k]:.3g}°", (1.15 * widest * k, -0.62 * widest), ha="center", va="top")
     axes.set_xlim(-0.65 * widest, (1.15 * len(boxes) - 0.5) * widest)

@@ -1,4 +1,4 @@
-"""All plots, by their names on the command line."""
+"""All plots of the analyses, by their names in `realcam lens plot`."""
 
 from __future__ import annotations
 
@@ -40,7 +40,11 @@ from .zernike import ZernikeFit, plot_zernike_fit, zernike_fit
 
 @dataclass(frozen=True)
 class Asked:
-    """Parameters of a plot; None is the plot's default."""
+    """Arguments of a plot, with the ray bundles that plots share; None selects the plot's default.
+
+    fields_deg: (F,); wavelengths_nm: (W,); frequencies_per_mm: (K,), periods per mm on the film.
+    method: of the MTF and the point spread function, see KINDS_WITH_METHODS.
+    """
 
     lens: Lens
     bundles: Bundles
@@ -49,23 +53,25 @@ class Asked:
     frequencies_per_mm: Doubles | None = None
     method: str | None = None
 
-    def one_field(self, share: float) -> float:
-        if self.fields_deg is None:
-            return float(field_angles_deg(self.lens, share, self.bundles)[0])
-        if len(self.fields_deg) != 1:
-            raise InputError(f"this plot is of one field; {len(self.fields_deg)} are given")
-        return float(self.fields_deg[0])
+    def field_deg(self, image_height: float) -> float:
+        """The field of a plot of one field; its default is a fraction of the largest image height.
 
-    def one_wavelength(self) -> float | None:
-        if self.wavelengths_nm is None:
-            return None
-        if len(self.wavelengths_nm) != 1:
-            raise InputError(f"this plot is of one wavelength; {len(self.wavelengths_nm)} are given")
-        return float(self.wavelengths_nm[0])
+        Raises InputError if several fields are specified.
+        """
+        field = _only_value(self.fields_deg, "field")
+        return float(field_angles_deg(self.lens, image_height, self.bundles)[0]) if field is None else field
+
+    def wavelength_nm(self) -> float | None:
+        """The wavelength of a plot of one wavelength. Raises InputError if several are specified."""
+        return _only_value(self.wavelengths_nm, "wavelength")
+
+    def frequency_per_mm(self) -> float | None:
+        """The frequency of a plot of one frequency. Raises InputError if several are specified."""
+        return _only_value(self.frequencies_per_mm, "frequency")
 
     @property
-    def curves(self) -> dict[str, Any]:
-        """Keyword arguments of most analyses."""
+    def fields_and_wavelengths(self) -> dict[str, Any]:
+        """Keyword arguments of analyses over several fields and wavelengths."""
         return {
             "fields_deg": self.fields_deg,
             "wavelengths_nm": self.wavelengths_nm,
@@ -74,25 +80,35 @@ class Asked:
         }
 
     @property
-    def one(self) -> dict[str, Any]:
-        return {"wavelength_nm": self.one_wavelength(), "object_distance_m": self.bundles.object_distance_m}
+    def monochromatic(self) -> dict[str, Any]:
+        """Keyword arguments of analyses at one wavelength. Raises InputError if several are specified."""
+        return {"wavelength_nm": self.wavelength_nm(), "object_distance_m": self.bundles.object_distance_m}
+
+
+def _only_value(values: Doubles | None, name: str) -> float | None:
+    """The only one of the values; None if none is specified. Raises InputError if there are several."""
+    if values is None:
+        return None
+    if len(values) != 1:
+        raise InputError(f"this plot is of one {name}; {len(values)} are given")
+    return float(values[0])
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of plot. help: one line. data: type of compute's result. shape: rows and columns of axes for the data.
-    plot: plots the data on all axes."""
+    """A kind of plot."""
 
-    help: str
-    data: type
+    help: str  #: description of the plotted quantity in a few words, for the command line's help
+    data: type  #: type of the result of `compute`
     compute: Callable[[Asked], Any]
-    shape: Callable[[Any], tuple[int, int]]
-    plot: Callable[[Any, np.ndarray], None]
-    square: bool = False
-    height: float = 1.0  #: of the figure, relative to `style.SIZES_IN`
+    shape: Callable[[Any], tuple[int, int]]  #: number of rows and columns of axes for the data
+    plot: Callable[[Any, np.ndarray], None]  #: plots the data on an array of axes of that shape
+    square: bool = False  #: True if the axes are square
+    height: float = 1.0  #: height of the figure, relative to `style.SIZES_IN`
 
 
 def _single(plot: Callable[[Any, Axes], None]) -> dict[str, Any]:
+    """`shape` and `plot` of a Kind with a single axes."""
     return {"shape": lambda _: (1, 1), "plot": lambda data, axes: plot(data, axes[0, 0])}
 
 
@@ -118,66 +134,73 @@ def _plot_bokeh(data: Any, axes: np.ndarray) -> None:
         plot_bokeh(data, axes[0, f], f)
 
 
-def _through_focus(asked: Asked) -> Any:
-    step = 2 * asked.lens.wavelength_nm * 1e-6 * asked.lens.first_order().f_number ** 2  # the depth of focus
-    spread = spot_diagram(asked.lens, [0.0], rings=4, object_distance_m=asked.bundles.object_distance_m)
-    step = max(step, float(spread.rms_radius_mm[0, 0]) * 2 * asked.lens.first_order().f_number)
-    return spot_diagram(asked.lens, defocus_mm=step * np.array([-2, -1, 0, 1, 2]), **asked.curves)
+def _spots_through_focus(arguments: Asked) -> Any:
+    """Spots on five planes, spaced by the diffraction-limited depth of focus, or by the geometric one if larger."""
+    lens = arguments.lens
+    step_mm = 2 * lens.wavelength_nm * 1e-6 * lens.first_order().f_number ** 2
+    axial = spot_diagram(lens, [0.0], rings=4, object_distance_m=arguments.bundles.object_distance_m)
+    step_mm = max(step_mm, float(axial.rms_radius_mm[0, 0]) * 2 * lens.first_order().f_number)
+    return spot_diagram(lens, defocus_mm=step_mm * np.array([-2, -1, 0, 1, 2]), **arguments.fields_and_wavelengths)
 
 
 def _spots_shape(data: Any) -> tuple[int, int]:
     return len(data.defocus_mm), len(data.fields_deg)
 
 
-def _mtf(asked: Asked, compute: Callable[..., Any]) -> Any:
-    given = {**asked.curves, "method": asked.method or "diffraction"}
+def _mtf(arguments: Asked, compute: Callable[..., Any]) -> Any:
+    """Calls mtf_over_frequency, mtf_over_field or mtf_through_focus."""
+    lens, keywords = arguments.lens, {**arguments.fields_and_wavelengths, "method": arguments.method or "diffraction"}
     if compute is mtf_over_field:
-        return compute(asked.lens, asked.frequencies_per_mm, **given)
+        return compute(lens, arguments.frequencies_per_mm, **keywords)
     if compute is mtf_through_focus:
-        frequencies = asked.frequencies_per_mm
-        if frequencies is not None and len(frequencies) != 1:
-            raise InputError(f"this plot is of one frequency; {len(frequencies)} are given")
-        return compute(asked.lens, None if frequencies is None else float(frequencies[0]), **given)
-    highest = None if asked.frequencies_per_mm is None else float(asked.frequencies_per_mm.max())
-    return compute(asked.lens, highest_per_mm=highest, **given)
+        return compute(lens, arguments.frequency_per_mm(), **keywords)
+    highest = None if arguments.frequencies_per_mm is None else float(arguments.frequencies_per_mm.max())
+    return compute(lens, highest_per_mm=highest, **keywords)
 
 
-def _design_only(asked: Asked) -> dict[str, Any]:
-    return {
-        "wavelength_nm": asked.one_wavelength(),
-        "object_distance_m": asked.bundles.object_distance_m,
-        "bundles": asked.bundles,
-    }
+def _with_bundles(arguments: Asked) -> dict[str, Any]:
+    """Keyword arguments of analyses at one wavelength that take ray bundles."""
+    return {**arguments.monochromatic, "bundles": arguments.bundles}
 
 
 def _map_of(quantity: str) -> Kind:
-    def compute(asked: Asked) -> FieldMap:
-        frequencies = asked.frequencies_per_mm
-        if frequencies is not None and len(frequencies) != 1:
-            raise InputError(f"this plot is of one frequency; {len(frequencies)} are given")
-        frequency = None if frequencies is None else float(frequencies[0])
-        return field_map(asked.lens, quantity, frequency_per_mm=frequency, **_design_only(asked))
+    """Kind of plot of one of field_map's QUANTITIES."""
+
+    def compute(arguments: Asked) -> FieldMap:
+        frequency = arguments.frequency_per_mm()
+        return field_map(arguments.lens, quantity, frequency_per_mm=frequency, **_with_bundles(arguments))
 
     return Kind(f"{QUANTITIES[quantity].title}, over the film", FieldMap, compute, **_single(plot_field_map))
 
 
+#: Kinds of plots for which `method` selects how they are computed.
 KINDS_WITH_METHODS = ("mtf", "mtf-field", "mtf-focus", "psf")
 KINDS: dict[str, Kind] = {
     "ray-fan": Kind(
-        "where rays land, by where they cross the stop",
+        "transverse ray aberrations over the stop",
         RayFan,
-        lambda a: ray_fan(a.lens, **a.curves),
+        lambda a: ray_fan(a.lens, **a.fields_and_wavelengths),
         lambda data: (2, len(data.fields_deg)),
         _plot_fans,
     ),
     "spot": Kind(
-        "where rays land", SpotDiagram, lambda a: spot_diagram(a.lens, **a.curves), _spots_shape, _plot_spots, True
+        "points at which the rays of an object point reach the film",
+        SpotDiagram,
+        lambda a: spot_diagram(a.lens, **a.fields_and_wavelengths),
+        _spots_shape,
+        _plot_spots,
+        True,
     ),
     "spot-through-focus": Kind(
-        "spots on planes beside the film", SpotDiagram, _through_focus, _spots_shape, _plot_spots, True
+        "spots on the film and on planes before and behind it",
+        SpotDiagram,
+        _spots_through_focus,
+        _spots_shape,
+        _plot_spots,
+        True,
     ),
     "longitudinal": Kind(
-        "where rays from the axis come back to it, by colour",
+        "longitudinal spherical aberration, by wavelength",
         LongitudinalAberration,
         lambda a: longitudinal_aberration(a.lens, a.wavelengths_nm, object_distance_m=a.bundles.object_distance_m),
         **_single(plot_longitudinal_aberration),
@@ -185,25 +208,25 @@ KINDS: dict[str, Kind] = {
     "field-curves": Kind(
         "tangential and sagittal focus over the field",
         FieldCurves,
-        lambda a: field_curves(a.lens, **a.curves),
+        lambda a: field_curves(a.lens, **a.fields_and_wavelengths),
         **_single(plot_field_curves),
     ),
     "distortion": Kind(
-        "the chief ray against the paraxial one",
+        "image height of the chief ray against the paraxial one",
         Distortion,
-        lambda a: distortion(a.lens, a.fields_deg, **_design_only(a)),
+        lambda a: distortion(a.lens, a.fields_deg, **_with_bundles(a)),
         **_single(plot_distortion),
     ),
     "distortion-grid": Kind(
         "a grid of squares as it appears on the film",
         DistortionGrid,
-        lambda a: distortion_grid(a.lens, **_design_only(a)),
+        lambda a: distortion_grid(a.lens, **_with_bundles(a)),
         **_single(plot_distortion_grid),
     ),
     "lateral-colour": Kind(
-        "the image's size by colour",
+        "difference of image heights between wavelengths",
         LateralColour,
-        lambda a: lateral_colour(a.lens, **a.curves),
+        lambda a: lateral_colour(a.lens, **a.fields_and_wavelengths),
         **_single(plot_lateral_colour),
     ),
     "seidel": Kind(
@@ -211,7 +234,7 @@ KINDS: dict[str, Kind] = {
         SeidelBars,
         lambda a: seidel_bars(
             a.lens,
-            None if a.fields_deg is None else a.one_field(1),
+            None if a.fields_deg is None else a.field_deg(1),
             object_distance_m=a.bundles.object_distance_m,
             bundles=a.bundles,
         ),
@@ -220,22 +243,22 @@ KINDS: dict[str, Kind] = {
     "wavefront": Kind(
         "optical path differences over the stop",
         WavefrontMap,
-        lambda a: wavefront_map(a.lens, a.one_field(0), **a.one),
+        lambda a: wavefront_map(a.lens, a.field_deg(0), **a.monochromatic),
         **_single(plot_wavefront_map),
     ),
     "zernike": Kind(
         "the wavefront as Zernike polynomials, in Noll's order",
         ZernikeFit,
-        lambda a: zernike_fit(a.lens, a.one_field(0), **a.one),
+        lambda a: zernike_fit(a.lens, a.field_deg(0), **a.monochromatic),
         **_single(plot_zernike_fit),
         height=1.1,
     ),
     "psf": Kind(
-        "the light of a point on the film, with diffraction",
+        "point spread function on the film, with diffraction",
         PointSpread,
         lambda a: point_spread(
             a.lens,
-            a.one_field(0),
+            a.field_deg(0),
             a.wavelengths_nm,
             method=a.method or "direct",
             size=128,
@@ -253,21 +276,21 @@ KINDS: dict[str, Kind] = {
         "contrast through focus", Mtf, lambda a: _mtf(a, mtf_through_focus), **_single(plot_mtf_through_focus)
     ),
     "relative-illumination": Kind(
-        "the light of an even field on the film",
+        "illuminance of the film from a uniform object, relative to the axis",
         FilmPupils,
-        lambda a: film_pupils(a.lens, a.fields_deg, **_design_only(a)),
+        lambda a: film_pupils(a.lens, a.fields_deg, **_with_bundles(a)),
         **_single(plot_relative_illumination),
     ),
     "pupil": Kind(
-        "the pupil's outline over the field: cat's eyes",
+        "outlines of the vignetted pupil (cat's eyes) over the field",
         FilmPupils,
-        lambda a: film_pupils(a.lens, a.fields_deg, samples=5, **_design_only(a)),
+        lambda a: film_pupils(a.lens, a.fields_deg, samples=5, **_with_bundles(a)),
         **_single(plot_pupil_shapes),
         height=0.5,
     ),
     **{f"{quantity}-map": _map_of(quantity) for quantity in QUANTITIES},
     "bokeh": Kind(
-        "points out of focus",
+        "images of points out of focus",
         Bokeh,
         lambda a: bokeh(a.lens, a.fields_deg, a.wavelengths_nm, object_distance_m=a.bundles.object_distance_m),
         lambda data: (1, len(data.fields_deg)),
@@ -275,7 +298,7 @@ KINDS: dict[str, Kind] = {
         True,
     ),
     "depth-of-field": Kind(
-        "what is sharp over the distance in focus, by aperture",
+        "depth of field over the focus distance, at several apertures",
         DepthOverFocus,
         lambda a: depth_over_focus(a.lens),
         **_single(plot_depth_over_focus),
@@ -283,19 +306,23 @@ KINDS: dict[str, Kind] = {
 }
 
 
-def compute(kind: str, asked: Asked) -> Any:
-    """The data of a plot. Raises InputError for an unknown kind."""
+def compute(kind: str, arguments: Asked) -> Any:
+    """Computes the data of a plot. Raises InputError for an unknown kind, and if the arguments do not apply to it."""
     if kind not in KINDS:
         raise InputError(f'unknown plot "{kind}"; expected one of {", ".join(KINDS)}')
-    if asked.method is not None and kind not in KINDS_WITH_METHODS:
-        raise InputError(f"--method goes with {', '.join(KINDS_WITH_METHODS)}; {kind} has one way alone")
-    return KINDS[kind].compute(asked)
+    if arguments.method is not None and kind not in KINDS_WITH_METHODS:
+        raise InputError(f"--method applies only to {', '.join(KINDS_WITH_METHODS)}; {kind} has a single method")
+    return KINDS[kind].compute(arguments)
 
 
 def plot_figure(
     kind: str, data: Any, *, theme: str = "light", size: str = "large", title: str = ""
 ) -> matplotlib.figure.Figure:
-    """A figure of the data. size: "small" or "large", by the inches of `style.SIZES_IN`."""
+    """Plots the data of a kind of plot on a new figure.
+
+    data: result of `compute` for the same kind. theme: "light" or "dark". size: "small" or "large", see
+    `style.SIZES_IN`; several plots on one figure may enlarge it. Raises InputError for an unknown size or theme.
+    """
     if size not in style.SIZES_IN:
         raise InputError(f'unknown size "{size}"; expected small or large')
     width, height = style.SIZES_IN[size]

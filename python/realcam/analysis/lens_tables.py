@@ -13,11 +13,13 @@ PRESCRIPTION = ("", "kind", "radius / mm", "thickness / mm", "glass, n_d", "semi
 
 
 def number(value: float, digits: int = 4) -> str:
+    """Text of a number with this many significant digits; "∞" for infinity."""
     return number_text(value, digits, infinite="∞")
 
 
 def prescription(lens: Lens) -> Iterator[tuple[str, ...]]:
-    """One row per surface, with the columns of PRESCRIPTION. The last thickness is the distance to the film."""
+    """Yields one row of texts per surface, with the columns of PRESCRIPTION. The last thickness is the distance to the
+    film."""
     for index, surface in enumerate(lens.surfaces):
         kind = "" if surface.type == "refracting" else surface.type
         if surface.aspheric_coefficients or surface.conic:
@@ -53,7 +55,8 @@ def _glass(surface: Surface) -> str:
 
 
 def first_order(lens: Lens) -> Iterator[tuple[str, str]]:
-    """(name, value) pairs of the lens at its current focus and stop. Raises InputError if no light passes."""
+    """Yields (name, value) texts of the lens's data at its current focus and stop. Raises InputError if no light
+    passes."""
     data, photo = lens.first_order(), photographic_figures(lens)
     angle = photo.angle_of_view_deg
     width, height = lens.film_mm
@@ -61,8 +64,8 @@ def first_order(lens: Lens) -> Iterator[tuple[str, str]]:
     if not lens.is_rotational:
         for meridian in lens.meridians():
             yield f"{meridian.azimuth_deg:.3g}° from x", f"{number(meridian.focal_length_mm)} mm"
-    bare = " where glass of unknown coatings is bare" if lens.unknown_coatings else ""
-    yield "f-number", f"f/{number(photo.f_number, 3)}, T/{number(photo.t_stop, 3)}{bare}"
+    assumption = ", assuming that surfaces with unknown coatings are uncoated" if lens.unknown_coatings else ""
+    yield "f-number", f"f/{number(photo.f_number, 3)}, T/{number(photo.t_stop, 3)}{assumption}"
     if math.isfinite(lens.focus_distance_m):
         yield "in focus", f"{number(lens.focus_distance_m)} m from the film, magnification {magnification(lens):.3g}"
     yield "film", f"{number(width)} x {number(height)} mm"

@@ -16,10 +16,10 @@ from . import style
 from .fields import (
     Bundles,
     Doubles,
+    analysis_inputs,
     bundles_of,
     default_frequencies_per_mm,
     fields_of,
-    light_of,
     numbers_of,
     texts_of,
 )
@@ -69,11 +69,13 @@ def mtf(
     film diagonal of 43 mm, scaled inversely for others. wavelengths_nm: None is F line, design wavelength, C line.
     weights: None is equal weights. defocus_mm: (D,) planes behind the film. method: "diffraction", or "geometric": by
     rays, as many as the highest frequency needs, to 1e-4; nan if 200 000 rays do not determine the contrast to 0.01.
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
     Raises InputError if no light passes.
     """
     if method not in METHODS:
         raise InputError(f'unknown method "{method}"; expected diffraction or geometric')
-    source, fields, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
+    source, fields, colours = analysis_inputs(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
     frequencies = (
         default_frequencies_per_mm(lens)
         if frequencies_per_mm is None
@@ -81,60 +83,72 @@ def mtf(
     )
     if (frequencies < 0).any():
         raise InputError("frequencies_per_mm must not be negative")
-    share = _shares(weights, len(colours))
+    fractions = _normalised(weights, len(colours))
     planes = numbers_of(defocus_mm, "defocus_mm")
     result = np.zeros((2, len(planes), len(fields), len(frequencies)))
     limit = np.zeros((2, len(fields), len(frequencies)))
-    of_colour = by_waves if method == "diffraction" else _by_rays
+    transfer_of = by_waves if method == "diffraction" else _by_rays
     for f, field in enumerate(fields):
-        light = [of_colour(source, float(field), float(colour), frequencies, planes) for colour in colours]
-        # All wavelengths refer to one film point, so that lateral colour counts.
-        beside = np.array([one.chief_ray_mm - light[0].chief_ray_mm for one in light])[:, ::-1]
-        turn = np.exp(-2j * np.pi * beside[:, :, None] * frequencies)
-        result[:, :, f] = np.abs(sum(w * one.otf * t[:, None] for w, one, t in zip(share, light, turn, strict=True)))
-        limit[:, f] = sum(w * one.limit for w, one in zip(share, light, strict=True))
-    return Mtf(fields, frequencies, planes, colours, share, result[0], result[1], limit[0], limit[1], method)
+        transfers = [transfer_of(source, float(field), float(colour), frequencies, planes) for colour in colours]
+        # All wavelengths refer to one film point, so that lateral colour counts: phases of the chief rays' offsets in y
+        # (tangential) and x (sagittal) from the first wavelength's.
+        offsets = np.array([one.chief_ray_mm - transfers[0].chief_ray_mm for one in transfers])[:, ::-1]
+        phases = np.exp(-2j * np.pi * offsets[:, :, None] * frequencies)
+        result[:, :, f] = np.abs(
+            sum(w * one.otf * phase[:, None] for w, one, phase in zip(fractions, transfers, phases, strict=True))
+        )
+        limit[:, f] = sum(w * one.limit for w, one in zip(fractions, transfers, strict=True))
+    return Mtf(fields, frequencies, planes, colours, fractions, result[0], result[1], limit[0], limit[1], method)
 
 
 @dataclass(frozen=True)
 class Transfer:
-    """otf: (2, D, K), complex, tangential and sagittal, about the chief ray; limit: (2, K)."""
+    """Optical transfer functions of one field and wavelength.
+
+    otf: (2, D, K), complex, tangential and sagittal, with the phase relative to the chief ray's film point.
+    limit: (2, K), that of the pupil without aberrations. chief_ray_mm: (2,), film point of the chief ray.
+    """
 
     otf: np.ndarray
     limit: Doubles
     chief_ray_mm: Doubles
 
 
-def _shares(weights: ArrayLike | None, count: int) -> Doubles:
-    share = np.ones(count) if weights is None else numbers_of(weights, "weights")
-    if share.shape != (count,) or not (share > 0).all():
+def _normalised(weights: ArrayLike | None, count: int) -> Doubles:
+    """Weights of `count` wavelengths with the sum 1; None: equal weights. Raises InputError."""
+    array = np.ones(count) if weights is None else numbers_of(weights, "weights")
+    if array.shape != (count,) or not (array > 0).all():
         raise InputError(f"weights must be {count} positive numbers, one for each wavelength")
-    shares: Doubles = share / share.sum()
-    return shares
+    fractions: Doubles = array / array.sum()
+    return fractions
 
 
 def by_waves(source: Bundles, field: FieldPosition, colour: float, frequencies: Doubles, planes: Doubles) -> Transfer:
-    """Diffraction MTF, by the autocorrelation of the pupil function."""
+    """Transfer function with diffraction, by the autocorrelation of the pupil function.
+
+    colour: wavelength, nm; frequencies: (K,), per mm; planes: (D,), mm behind the film. Raises InputError.
+    """
     pupil = pupil_function(source, field, colour)
-    ways = [lines_of(pupil, tangential=tangential) for tangential in (True, False)]
+    directions = [lines_of(pupil, tangential=tangential) for tangential in (True, False)]
     return Transfer(
-        np.stack([transfer(pupil, lines, frequencies, planes) for lines in ways]),
-        np.stack([transfer_limit(pupil, lines, frequencies) for lines in ways]),
+        np.stack([transfer(pupil, lines, frequencies, planes) for lines in directions]),
+        np.stack([transfer_limit(pupil, lines, frequencies) for lines in directions]),
         pupil.chief_ray_mm,
     )
 
 
-_ARMS, _NODES, _MOST_DOUBLINGS = 32, 6, 5
+# Radial scan lines and Gauss nodes per line of the smallest ray bundle, and how often both numbers may be doubled.
+_ARMS, _NODES, _MAX_DOUBLINGS = 32, 6, 5
 # Errors of the contrast: the goal, and the largest accepted one at the maximum number of rays.
-_WANTED_ERROR, _TOLD_ERROR = 1e-4, 1e-2
+_GOAL_ERROR, _MAX_ERROR = 1e-4, 1e-2
 
 
 def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles, planes: Doubles) -> Transfer:
-    """Geometric MTF, with as many rays as the frequencies need.
+    """Geometric transfer function, with as many rays as the frequencies need; arguments as for by_waves.
 
     A sum over M radial scan lines is exact for fewer than M periods around the pupil, a sum over n Gauss nodes for
     about n periods along a line. The initial counts follow from the periods across the spot; they are doubled until the
-    contrast converges.
+    contrast converges, and nan replaces values that have not converged then. Raises InputError if no light passes.
     """
 
     def bundle(doublings: int) -> RayBundle:
@@ -142,16 +156,16 @@ def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles,
 
     radius = np.linalg.norm(_points(bundle(0), planes, slice(None)), axis=2).max()
     periods = float(frequencies.max() * radius)
-    enough = math.ceil(math.log2(max(1.0, 2 * math.pi * periods / _ARMS, periods / _NODES)))
-    doublings = min(1 + enough, _MOST_DOUBLINGS)
-    before = _sum_of_rays(bundle(doublings - 1), frequencies, planes)
+    sufficient = math.ceil(math.log2(max(1.0, 2 * math.pi * periods / _ARMS, periods / _NODES)))
+    doublings = min(1 + sufficient, _MAX_DOUBLINGS)
+    previous = _sum_of_rays(bundle(doublings - 1), frequencies, planes)
     while True:
         otf = _sum_of_rays(bundle(doublings), frequencies, planes)
-        error = np.abs(otf - before)
-        if error.max() < _WANTED_ERROR or doublings == _MOST_DOUBLINGS:
+        error = np.abs(otf - previous)
+        if error.max() < _GOAL_ERROR or doublings == _MAX_DOUBLINGS:
             break
-        before, doublings = otf, doublings + 1
-    otf = np.where(error < _TOLD_ERROR, otf, np.nan)
+        previous, doublings = otf, doublings + 1
+    otf = np.where(error < _MAX_ERROR, otf, np.nan)
     return Transfer(otf, np.ones((2, len(frequencies))), np.array(bundle(0).chief_ray_mm))
 
 
@@ -168,8 +182,8 @@ def _sum_of_rays(bundle: RayBundle, frequencies: Doubles, planes: Doubles) -> np
     step = max(1, (1 << 21) // (len(planes) * len(frequencies)))  # rays per batch: about 100 MB
     for first in range(0, len(bundle.energy), step):
         rays = slice(first, first + step)
-        turns = 2 * np.pi * frequencies[:, None] * _points(bundle, planes, rays).transpose(2, 0, 1)[::-1, :, None, :]
-        otf += np.cos(turns) @ bundle.energy[rays] - 1j * (np.sin(turns) @ bundle.energy[rays])  # faster than exp
+        phases = 2 * np.pi * frequencies[:, None] * _points(bundle, planes, rays).transpose(2, 0, 1)[::-1, :, None, :]
+        otf += np.cos(phases) @ bundle.energy[rays] - 1j * (np.sin(phases) @ bundle.energy[rays])  # faster than exp
     return otf
 
 
@@ -239,16 +253,16 @@ def mtf_through_focus(
     frequency_per_mm: None is the middle default frequency. defocus_mm: None is f-number over frequency to either side,
     where a perfect lens has lost its axial contrast.
     """
-    at = float(default_frequencies_per_mm(lens)[1]) if frequency_per_mm is None else frequency_per_mm
+    frequency = float(default_frequencies_per_mm(lens)[1]) if frequency_per_mm is None else frequency_per_mm
     planes = (
-        np.linspace(-1, 1, samples) * lens.first_order().f_number / max(at, 1e-9)
+        np.linspace(-1, 1, samples) * lens.first_order().f_number / max(frequency, 1e-9)
         if defocus_mm is None
         else numbers_of(defocus_mm, "defocus_mm")
     )
     return mtf(
         lens,
         fields_deg,
-        [at],
+        [frequency],
         defocus_mm=planes,
         wavelengths_nm=wavelengths_nm,
         method=method,
@@ -257,10 +271,11 @@ def mtf_through_focus(
     )
 
 
-def _finish(axes: Axes, title: str, data: Mtf) -> None:
+def _add_labels(axes: Axes, title: str, data: Mtf) -> None:
+    """Adds title, y axis and legend, which all plots of MTF share."""
     axes.set_ylim(0, 1.02)
     axes.set_ylabel("contrast")
-    axes.set_title(title if data.method == "diffraction" else f"{title}{'' if title == 'MTF' else ','} of rays alone")
+    axes.set_title(title if data.method == "diffraction" else f"{title}, geometric")
     axes.plot([], [], color=style.GREY, label="tangential")
     axes.plot([], [], "--", color=style.GREY, label="sagittal")
     style.legend_beside(axes)
@@ -275,7 +290,7 @@ def plot_mtf_over_frequency(data: Mtf, axes: Axes) -> None:
         axes.plot(data.frequencies_per_mm, data.limit_tangential[0], ":", color=style.text_colour(), label="limit")
     axes.set_xlim(0, float(data.frequencies_per_mm.max()))
     axes.set_xlabel("periods per mm")
-    _finish(axes, "MTF", data)
+    _add_labels(axes, "MTF", data)
 
 
 def plot_mtf_over_field(data: Mtf, axes: Axes) -> None:
@@ -294,10 +309,11 @@ def plot_mtf_over_field(data: Mtf, axes: Axes) -> None:
             )
     axes.set_xlim(0, max(float(data.fields_deg.max()), 1e-9))
     axes.set_xlabel("field / °")
-    _finish(axes, "MTF over the field", data)
+    _add_labels(axes, "MTF over the field", data)
 
 
 def plot_mtf_through_focus(data: Mtf, axes: Axes) -> None:
+    """Plots MTF over defocus, with the diffraction limit of the first field."""
     for f, label in enumerate(texts_of(data.fields_deg, "°")):
         axes.plot(data.defocus_mm, data.tangential[:, f, 0], color=style.field_colour(f), label=label)
         axes.plot(data.defocus_mm, data.sagittal[:, f, 0], "--", color=style.field_colour(f))
@@ -306,4 +322,4 @@ def plot_mtf_through_focus(data: Mtf, axes: Axes) -> None:
     style.zero_lines(axes, y=False)
     axes.set_xlim(float(data.defocus_mm.min()), float(data.defocus_mm.max()))
     axes.set_xlabel("plane behind the film / mm")
-    _finish(axes, f"MTF at {data.frequencies_per_mm[0]:.4g}/mm through focus", data)
+    _add_labels(axes, f"MTF at {data.frequencies_per_mm[0]:.4g}/mm through focus", data)

@@ -25,6 +25,7 @@ def kind_of(data: Any) -> str:
 
 
 def png(data: Any) -> bytes:
+    """PNG of the plot of a result."""
     return figure_bytes(plot_figure(kind_of(data), data, size="small"), ".png", NOTEBOOK_DPI)
 
 

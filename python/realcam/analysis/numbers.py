@@ -19,13 +19,13 @@ FORMATS = (".json", ".csv")
 
 
 def as_json(data: Any) -> str:
-    """All fields of a result by their names, arrays as lists. nan becomes null and infinities become strings, because
-    JSON has neither."""
+    """Returns a JSON object with all fields of a result, a dataclass, by their names; arrays become lists. nan becomes
+    null and infinities become strings, because JSON has neither."""
     return json.dumps({f.name: _plain(getattr(data, f.name)) for f in dataclasses.fields(data)}, indent=1)
 
 
 def as_csv(data: Any) -> str:
-    """A table with one number per line: field name, array index along each axis, and value."""
+    """Returns a CSV table with one number of the result per line: field name, index along each axis, and value."""
     fields = {f.name: getattr(data, f.name) for f in dataclasses.fields(data)}
     numbers = {name: np.asarray(v) for name, v in fields.items() if _is_numeric(v)}
     depth = max((array.ndim for array in numbers.values()), default=0)
@@ -39,7 +39,7 @@ def as_csv(data: Any) -> str:
 
 
 def save_numbers(data: Any, path: str | os.PathLike[str]) -> None:
-    """Writes .json or .csv, completely or not at all. Raises ImageFileError."""
+    """Writes a result as .json or .csv, completely or not at all. Raises ImageFileError."""
     target = files.check_target(path, FORMATS)
     text = as_json(data) + "\n" if target.suffix.lower() == ".json" else as_csv(data)
     files.write_whole(target, text.encode())

@@ -17,8 +17,13 @@ from .fields import Doubles, numbers_of
 
 @dataclass(frozen=True, repr=False)
 class PointSpread(ShortText):
-    """values: (size, size), fraction of the light per um^2, rows from the lowest y. centre_mm: film point of
-    x_um = y_um = 0. strehl: nan for the method "geometric"."""
+    """Point spread function of one field.
+
+    method: "direct", "fft" or "geometric", as for Lens.psf. x_um, y_um: (size,), coordinates of the samples.
+    values: (size, size), fraction of the light per um^2, rows from the lowest y. centre_mm: film point of
+    x_um = y_um = 0. strehl: nan for the method "geometric". energy: as in PSF.
+    film_mm: the field as a film point; then field_deg is meaningless. None: the field is field_deg.
+    """
 
     field_deg: float
     method: str
@@ -84,7 +89,7 @@ def plot_decades(data: PointSpread | PSF, axes: Axes, title: str) -> None:
     axes.set_ylabel("y / µm")
     strehl = "" if np.isnan(data.strehl) else f", Strehl {data.strehl:.2g}"
     axes.set_title(f"{title}{strehl}")
-    style.colour_bar(axes, picture, "decades of the peak")
+    style.colour_bar(axes, picture, "decades relative to the peak")
 
 
 def psf_png(psf: PSF) -> bytes:

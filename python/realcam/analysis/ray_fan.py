@@ -12,7 +12,7 @@ from .._core import Lens
 from ..short_text import ShortText
 from . import style
 from .exit_rays import exit_rays
-from .fields import Bundles, Doubles, light_of
+from .fields import Bundles, Doubles, analysis_inputs
 
 
 @dataclass(frozen=True, repr=False)
@@ -41,8 +41,13 @@ def ray_fan(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> RayFan:
-    """Fans of real rays. Defaults: 0, 0.7, 1 of the largest image height; F line, design wavelength, C line."""
-    source, fields, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
+    """Computes fans of real rays, with `samples` rays across the stop in each fan.
+
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
+    Other defaults: 0, 0.7 and 1 times the largest image height; F line, design wavelength, C line.
+    """
+    source, fields, colours = analysis_inputs(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
     pupil = np.linspace(-1, 1, samples)
     zero = np.zeros(samples)
     pupil_points = np.concatenate([np.column_stack([zero, pupil]), np.column_stack([pupil, zero])])

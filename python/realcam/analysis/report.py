@@ -52,8 +52,8 @@ def save_report(
     else:
         if fields_deg is not None:
             raise InputError(
-                f'fields of lens "{lens.name}" are points of its film, as it is not of revolution; its report chooses '
-                "them itself"
+                f'fields_deg does not apply to lens "{lens.name}", which is not rotationally symmetric: its report '
+                "shows predefined film points"
             )
         plots = FilmPlots(source, colours)
         facts = facts_of(source, plots.points, colours)

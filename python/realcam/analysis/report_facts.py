@@ -16,19 +16,20 @@ WIDEST_DEG = 60.0  # largest field of the Seidel sums
 
 @dataclass(frozen=True)
 class ReportFacts:
-    """Texts of a report. columns: heads of the table, prescription_columns of the prescription, then Seidel sums. rows:
-    one per surface, and the sums."""
+    """Texts of a report: data of the lens, and the table of its surfaces."""
 
     title: str
-    source: str
-    figures: list[tuple[str, str]]
-    columns: tuple[str, ...]
-    prescription_columns: int
-    rows: list[tuple[str, ...]]
-    note: str
+    source: str  #: reference of the prescription, from the lens file
+    figures: list[tuple[str, str]]  #: (name, value) of first-order and photographic data
+    columns: tuple[str, ...]  #: heads of the table: the prescription's, then those of the Seidel sums if there are any
+    prescription_columns: int  #: number of the prescription's columns
+    rows: list[tuple[str, ...]]  #: one for each surface, and the sums if there are Seidel sums; "sum" is their kind
+    note: str  #: explanations below the table
 
 
 def facts_of(source: Bundles, fields: Sequence[FieldPosition], colours: Doubles) -> ReportFacts:
+    """Returns the texts for a lens. fields: angles, or film points of a lens without rotational symmetry. colours:
+    (W,), wavelengths, nm. Raises InputError if no light passes."""
     lens = source.lens
     columns: tuple[str, ...] = lens_tables.PRESCRIPTION
     rows = list(lens_tables.prescription(lens))
@@ -38,18 +39,18 @@ def facts_of(source: Bundles, fields: Sequence[FieldPosition], colours: Doubles)
     points = [f"({field[0]:.3g}, {field[1]:.3g})" for field in fields if isinstance(field, tuple)]
     try:
         if not fields_deg:
-            raise InputError("they are of lenses of revolution")
-        third = seidel_bars(
+            raise InputError("the lens is not rotationally symmetric")
+        seidel = seidel_bars(
             lens,
             min(max(map(abs, fields_deg)), WIDEST_DEG),
             object_distance_m=source.object_distance_m,
             bundles=source,
         )
         columns = (*columns, *SYMBOLS)
-        sums = seidel_table(third)
+        sums = seidel_table(seidel)
         rows = [row + by_surface for row, by_surface in zip(rows, sums, strict=False)]
         rows.append(("", "sum", *[""] * (count - 2), *sums[-1]))
-        note += f" Seidel's sums, and those of colour, are in µm for a field of {third.field_deg:.3g}°."
+        note += f" Seidel sums and chromatic sums are in µm, for a field of {seidel.field_deg:.3g}°."
     except InputError as error:
         note += f" There are no Seidel sums: {error}."
     figures = [

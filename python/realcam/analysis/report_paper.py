@@ -33,30 +33,32 @@ def pdf_of(facts: ReportFacts, plots: ReportPlots, theme: str) -> bytes:
 
 
 def lens_page(facts: ReportFacts, plots: ReportPlots, theme: str) -> Figure:
+    """Page with the lens's drawing, data and prescription."""
     figure = Figure(figsize=PAGE_IN)
     _head(figure, facts.title, "The lens")
-    below = 0.944
+    y = 0.944  # of the next text, as a fraction of the page's height
     for line in textwrap.wrap(facts.source, 150)[:2]:
-        figure.text(LEFT, below, line, fontsize=6, va="top", alpha=QUIET, parse_math=False)
-        below -= 0.0095
-    height = (below - 0.015 - 0.665) / len(plots.drawings)
+        figure.text(LEFT, y, line, fontsize=6, va="top", alpha=QUIET, parse_math=False)
+        y -= 0.0095
+    height = (y - 0.015 - 0.665) / len(plots.drawings)
     for k, options in enumerate(plots.drawings):
-        axes = figure.add_axes((0.085, below - 0.015 - (k + 1) * height, 0.875, (0.85 if k else 1) * height))
+        axes = figure.add_axes((0.085, y - 0.015 - (k + 1) * height, 0.875, (0.85 if k else 1) * height))
         draw_cross_section(plots.source.lens, axes, theme=theme, **options)
         axes.set_title("")
         axes.grid(visible=False)
-    below = _draw_figures(figure, facts.figures, 0.615)
-    _draw_table(figure, facts, below - 0.02)
+    y = _draw_figures(figure, facts.figures, 0.615)
+    _draw_table(figure, facts, y - 0.02)
     return figure
 
 
 def _head(figure: Figure, title: str, subject: str) -> None:
+    """Writes a page's heading."""
     figure.text(LEFT, 0.968, title, fontsize=13, weight="bold", parse_math=False)
     figure.text(LEFT, 0.951, subject, fontsize=10)
 
 
 def _draw_figures(figure: Figure, figures: list[tuple[str, str]], top: float) -> float:
-    """Writes the data in two columns. Returns their lower end."""
+    """Writes names and values in two columns from the height `top` on. Returns their lower end."""
     half, line = -(-len(figures) // 2), 0.0125
     for index, (name, text) in enumerate(figures):
         column, row = divmod(index, half)
@@ -103,6 +105,8 @@ def _edges(facts: ReportFacts) -> list[float]:
 def _draw_row(
     axes: Axes, edges: list[float], y: float, cells: list[str] | tuple[str, ...], size: float, prescription: int
 ) -> None:
+    """Writes a row of the table. edges: right edges of its columns. size: of the font, in points. prescription: number
+    of the prescription's columns."""
     for k, (cell, edge) in enumerate(zip(cells, edges, strict=True)):
         is_text = prescription > k and k in (1, 4)  # kind and glass
         x = edges[k - 1] + 0.012 if is_text else edge

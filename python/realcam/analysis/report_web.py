@@ -70,7 +70,7 @@ def page_of(facts: ReportFacts, plots: ReportPlots, theme: str | None) -> bytes:
 <table class="figures">
 {figures}
 </table>
-<h2>Prescription{" and Seidel's sums" if len(facts.columns) > facts.prescription_columns else ""}</h2>
+<h2>Prescription{" and Seidel sums" if len(facts.columns) > facts.prescription_columns else ""}</h2>
 <div class="wide">
 {_surfaces(facts)}
 </div>
@@ -82,13 +82,15 @@ def page_of(facts: ReportFacts, plots: ReportPlots, theme: str | None) -> bytes:
 
 
 def _surfaces(facts: ReportFacts) -> str:
+    """HTML table of the surfaces."""
+
     def cells(row: tuple[str, ...], opened: str, closed: str) -> str:
-        made = []
+        parts = []
         for k, cell in enumerate(row):
             is_text = k < facts.prescription_columns and k in (1, 4)  # kind and glass
             with_index = re.sub("_([A-Zd]+)", r"<sub>\1</sub>", html.escape(cell))
-            made.append(f"<{opened}{' class=text' if is_text else ''}>{with_index}</{closed}>")
-        return "".join(made)
+            parts.append(f"<{opened}{' class=text' if is_text else ''}>{with_index}</{closed}>")
+        return "".join(parts)
 
     rows = "\n".join(
         f"<tr{' class=sum' if row[1] == 'sum' else ''}>{cells(row, 'td', 'td')}</tr>" for row in facts.rows

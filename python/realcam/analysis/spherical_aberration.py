@@ -17,7 +17,9 @@ from .fields import Doubles, wavelengths_of
 
 @dataclass(frozen=True, repr=False)
 class LongitudinalAberration(ShortText):
-    """wavelengths_nm: (W,); pupil: (P,), heights in the stop in units of its radius, from the axis.
+    """Intersections of rays of the axial point with the axis.
+
+    wavelengths_nm: (W,); pupil: (P,), heights in the stop in units of its radius, from the axis.
     focus_mm: (W, P), position of the ray's intersection with the axis, behind the film; the first per wavelength is the
       paraxial focus. nan for rays that do not pass.
     """
@@ -48,6 +50,7 @@ def longitudinal_aberration(
 
 
 def plot_longitudinal_aberration(data: LongitudinalAberration, axes: Axes) -> None:
+    """Plots the intersections in mm behind the film, with the height in the stop upwards."""
     for curve, (colour, label) in zip(data.focus_mm, style.coloured(data.wavelengths_nm), strict=True):
         axes.plot(curve, data.pupil, color=colour, label=label)
     style.zero_lines(axes, y=False)

@@ -13,7 +13,7 @@ from ..fields import FieldPosition, field_arguments, field_text
 from ..short_text import ShortText
 from . import style
 from .exit_rays import exit_rays, hexapolar
-from .fields import Bundles, Doubles, bundles_of, film_points_of, light_of, numbers_of, wavelengths_of
+from .fields import Bundles, Doubles, analysis_inputs, bundles_of, film_points_of, numbers_of, wavelengths_of
 
 
 @dataclass(frozen=True, repr=False)
@@ -54,13 +54,16 @@ def spot_diagram(
     """Spots of a hexapolar pattern with `rings` rings, on the film and on defocused planes.
 
     film_mm: (F, 2), film points of the chief rays, in place of angles. defocus_mm: (D,), planes, positive behind the
-    film. Defaults: 0, 0.7 and 1 times the largest image height; F line, design wavelength, C line. Raises InputError if
-    no light passes.
+    film.
+    object_distance_m: object plane to front vertex; None is that of `bundles`, else the plane in focus. bundles: cache
+    of ray bundles that several analyses of the same lens and object distance share; None makes one for this call.
+    Other defaults: 0, 0.7 and 1 times the largest image height; F line, design wavelength, C line.
+    Raises InputError if no light passes.
     """
     angles: Doubles
     fields: list[FieldPosition]
     if film_mm is None:
-        source, angles, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
+        source, angles, colours = analysis_inputs(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
         fields = [float(angle) for angle in angles]
     else:
         source, colours = bundles_of(lens, object_distance_m, bundles), wavelengths_of(lens, wavelengths_nm)
@@ -71,16 +74,16 @@ def spot_diagram(
     points = np.empty((len(planes), len(fields), len(colours), len(pupil_points), 2))
     airy = np.empty((len(fields), 2))
     for f, field in enumerate(fields):
-        middle = _chief_line(source, field)
+        chief_point, chief_slopes = _chief_line(source, field)
         for w, colour in enumerate(colours):
             rays = exit_rays(lens, pupil_points, field, float(colour), source.object_distance_m)
             if np.isnan(rays.points_mm).all():
                 raise InputError(f'none of {len(pupil_points)} rays at {field_text(field)} passes lens "{lens.name}"')
             for d, plane in enumerate(planes):
-                points[d, f, w] = rays.at(float(plane)) - (middle[0] + plane * middle[1])
+                points[d, f, w] = rays.at(float(plane)) - (chief_point + plane * chief_slopes)
         bundle = source.at(field, lens.wavelength_nm)
-        across = np.ptp(bundle.edge_slopes.reshape(-1, 2), axis=0)
-        airy[f] = 1.22e-6 * bundle.wavelength_nm / bundle.index / across
+        apertures = np.ptp(bundle.edge_slopes.reshape(-1, 2), axis=0)  # 1 / f-number along x and y
+        airy[f] = 1.22e-6 * bundle.wavelength_nm / bundle.index / apertures
     all_colours = points.reshape(len(planes), len(fields), -1, 2)
     centroid = np.nanmean(all_colours, axis=2)
     square = ((all_colours - centroid[:, :, None]) ** 2).sum(axis=-1)
@@ -91,11 +94,14 @@ def spot_diagram(
 
 
 def _chief_line(source: Bundles, field: FieldPosition) -> tuple[Doubles, Doubles]:
-    """Film point and slopes dx/dz, dy/dz of the chief ray at the design wavelength, even if it is blocked."""
+    """Film point, (2,), mm, and slopes dx/dz, dy/dz of the chief ray at the design wavelength, even if it is blocked.
+
+    The slopes follow from its points on the film and on a plane close behind it. Raises InputError if no light passes.
+    """
     lens = source.lens
     step = 1e-3 * max(abs(lens.film_distance_mm), 1.0)
-    here = np.array(source.chief(field, lens.wavelength_nm).chief_ray_mm)
-    there = lens.bundle(
+    on_film = np.array(source.chief(field, lens.wavelength_nm).chief_ray_mm)
+    behind = lens.bundle(
         **field_arguments(field),
         wavelength_nm=lens.wavelength_nm,
         object_distance_m=source.object_distance_m,
@@ -103,18 +109,21 @@ def _chief_line(source: Bundles, field: FieldPosition) -> tuple[Doubles, Doubles
         arms=4,
         nodes=1,
     ).chief_ray_mm
-    return here, (np.array(there) - here) / step
+    return on_film, (np.array(behind) - on_film) / step
 
 
 def plot_spot_diagram(spots: SpotDiagram, axes: Axes, field: int = 0, plane: int = 0, half_mm: float = 0.0) -> None:
-    """Plots one spot: all wavelengths, and the first dark ring of the Airy disc. half_mm: half the side of the plotted
-    square; 0 fits the spot."""
+    """Plots the spot of one field and plane, given by their indices: all wavelengths, and the Airy disc's first dark
+    ring.
+
+    half_mm: half the side of the plotted square; 0 fits the spot.
+    """
     marks = ("o", "s", "^")
     for w, (colour, label) in enumerate(style.coloured(spots.wavelengths_nm)):
-        at = 1e3 * spots.points_mm[plane, field, w]
+        points_um = 1e3 * spots.points_mm[plane, field, w]
         axes.plot(
-            at[:, 0],
-            at[:, 1],
+            points_um[:, 0],
+            points_um[:, 1],
             marks[w % len(marks)],
             color=colour,
             markersize=1.6,
@@ -124,29 +133,29 @@ def plot_spot_diagram(spots: SpotDiagram, axes: Axes, field: int = 0, plane: int
             rasterized=True,
         )
     angle = np.linspace(0, 2 * np.pi, 73)
-    middle, radii = 1e3 * spots.centroid_mm[plane, field], 1e3 * spots.airy_radii_mm[field]
+    centre, radii = 1e3 * spots.centroid_mm[plane, field], 1e3 * spots.airy_radii_mm[field]
     axes.plot(
-        middle[0] + radii[0] * np.cos(angle),
-        middle[1] + radii[1] * np.sin(angle),
+        centre[0] + radii[0] * np.cos(angle),
+        centre[1] + radii[1] * np.sin(angle),
         color=style.text_colour(),
         linewidth=0.7,
         label="Airy",
     )
     half = 1e3 * (half_mm or half_side_mm(spots, field))
-    axes.set_xlim(middle[0] - half, middle[0] + half)
-    axes.set_ylim(middle[1] - half, middle[1] + half)
+    axes.set_xlim(centre[0] - half, centre[0] + half)
+    axes.set_ylim(centre[1] - half, centre[1] + half)
     axes.set_aspect("equal")
     axes.set_xlabel("x / µm")
     axes.set_ylabel("y / µm")
-    beside = f", {1e3 * spots.defocus_mm[plane]:+.3g} µm" if len(spots.defocus_mm) > 1 else ""
+    defocus = f", {1e3 * spots.defocus_mm[plane]:+.3g} µm" if len(spots.defocus_mm) > 1 else ""
     film_point = None if spots.film_mm is None else spots.film_mm[field]
     radius_um = 1e3 * spots.rms_radius_mm[plane, field]
-    title = f"{style.field_title(spots.fields_deg[field], film_point)}{beside}, RMS {radius_um:.3g} µm"
+    title = f"{style.field_title(spots.fields_deg[field], film_point)}{defocus}, RMS {radius_um:.3g} µm"
     axes.set_title(title.replace("-", "−"))  # the same minus sign as on the axes
 
 
 def half_side_mm(spots: SpotDiagram, field: int | None = None) -> float:
     """Half the side of a square about the centroid that contains the spots on all planes, of one field or of all."""
     chosen = slice(None) if field is None else slice(field, field + 1)
-    away = spots.points_mm[:, chosen] - spots.centroid_mm[:, chosen, None, None]
-    return 1.08 * max(float(np.nanmax(np.abs(away))), 1.3 * float(spots.airy_radii_mm[chosen].max()))
+    offsets = spots.points_mm[:, chosen] - spots.centroid_mm[:, chosen, None, None]
+    return 1.08 * max(float(np.nanmax(np.abs(offsets))), 1.3 * float(spots.airy_radii_mm[chosen].max()))

@@ -19,7 +19,7 @@ from ..drawing.figure_files import ShownFigure
 from ..drawing.themes import theme_named
 from .fields import texts_of
 
-SIZES_IN = {"small": (4.2, 3.0), "large": (8.0, 5.6)}
+SIZES_IN = {"small": (4.2, 3.0), "large": (8.0, 5.6)}  # width and height of a figure with one plot, in inches
 # Colours with a contrast of at least 3 to both the white and the dark page.
 BLUE, GREEN, RED = "#4a78d6", "#2f9a58", "#d9493c"
 FIELD_COLOURS = ("#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a")
@@ -37,8 +37,9 @@ def wavelength_colours(wavelengths_nm: NDArray[np.float64]) -> list[str]:
     return [matplotlib.colors.to_hex(matplotlib.colormaps["turbo"](0.1 + 0.8 * rank / (count - 1))) for rank in order]
 
 
-def field_colour(number: int) -> str:
-    return FIELD_COLOURS[number % len(FIELD_COLOURS)]
+def field_colour(index: int) -> str:
+    """Colour of the field, or another parameter, with this index; the colours repeat after eight."""
+    return FIELD_COLOURS[index % len(FIELD_COLOURS)]
 
 
 @contextmanager
@@ -84,10 +85,12 @@ def text_colour() -> str:
 
 
 def tick_size_pt() -> float:
+    """Font size of tick labels in the current theme, in points."""
     return float(matplotlib.rcParams["ytick.labelsize"])
 
 
 def new_figure(width_in: float, height_in: float) -> matplotlib.figure.Figure:
+    """Returns a figure that notebooks display, with matplotlib's constrained layout."""
     return ShownFigure(figsize=(width_in, height_in), layout="constrained")
 
 
@@ -109,7 +112,7 @@ def field_title(field_deg: float, film_mm: Sequence[float] | NDArray[np.float64]
 
 
 def zero_lines(axes: Axes, x: bool = True, y: bool = True) -> None:
-    """Thin lines through the origin."""
+    """Draws thin lines through the origin. x: the vertical line x = 0; y: the horizontal line y = 0."""
     if y:
         axes.axhline(0, color=GREY, linewidth=0.6, zorder=1)
     if x:
@@ -117,11 +120,12 @@ def zero_lines(axes: Axes, x: bool = True, y: bool = True) -> None:
 
 
 def legend_beside(axes: Axes, **options: Any) -> None:
-    """Places the legend outside the axes, where it covers no curve."""
+    """Places the legend outside the axes, where it covers no curve. options: of Axes.legend, override the position."""
     axes.legend(**{"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), **options})
 
 
 def colour_bar(axes: Axes, picture: AxesImage, label: str) -> None:
+    """Adds the colour scale of a picture beside its axes."""
     figure = axes.get_figure()
     assert figure is not None
     bar = figure.colorbar(picture, ax=axes, shrink=0.8)
@@ -130,7 +134,7 @@ def colour_bar(axes: Axes, picture: AxesImage, label: str) -> None:
 
 
 def plain_decades(axis: Axis) -> None:
-    """Ticks at 1, 2 and 5 of each decade, as numbers without powers."""
+    """Sets the ticks of a logarithmic axis to 1, 2 and 5 of each decade, as plain numbers without powers of ten."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_locator(NullLocator())

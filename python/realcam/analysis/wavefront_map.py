@@ -15,7 +15,9 @@ from .fields import Doubles
 
 @dataclass(frozen=True, repr=False)
 class WavefrontMap(ShortText):
-    """map_waves: (N, N), rows from the lowest y of the stop, columns from the lowest x, over the stop's bounding
+    """Optical path differences over the stop.
+
+    map_waves: (N, N), rows from the lowest y of the stop, columns from the lowest x, over the stop's bounding
     square; nan where no ray passes. Positive where the wavefront is ahead of the reference sphere about the chief ray's
     film point.
     """
@@ -40,7 +42,7 @@ def wavefront_map(
     film_mm: tuple[float, float] | None = None,
 ) -> WavefrontMap:
     """Map of Lens.wavefront. remove, film_mm: see there. Defaults: the design wavelength; the plane in focus."""
-    front = lens.wavefront(
+    wavefront = lens.wavefront(
         field_deg,
         wavelength_nm=wavelength_nm,
         samples=samples,
@@ -50,25 +52,26 @@ def wavefront_map(
     )
     return WavefrontMap(
         field_deg,
-        front.wavelength_nm,
-        front.map_waves(),
-        front.rms_waves,
-        front.peak_to_valley_waves,
-        front.strehl,
+        wavefront.wavelength_nm,
+        wavefront.map_waves(),
+        wavefront.rms_waves,
+        wavefront.peak_to_valley_waves,
+        wavefront.strehl,
         film_mm,
     )
 
 
 def plot_wavefront_map(data: WavefrontMap, axes: Axes) -> None:
-    middle = float(np.nanmean(data.map_waves))
-    span = float(np.nanmax(np.abs(data.map_waves - middle))) or 1.0
+    """Plots the map in waves; colours are centred on its mean."""
+    mean = float(np.nanmean(data.map_waves))
+    span = float(np.nanmax(np.abs(data.map_waves - mean))) or 1.0
     picture = axes.imshow(
         data.map_waves,
         origin="lower",
         extent=(-1, 1, -1, 1),
         cmap="RdBu_r",
-        vmin=middle - span,
-        vmax=middle + span,
+        vmin=mean - span,
+        vmax=mean + span,
         interpolation="nearest",
     )
     axes.grid(visible=False)

@@ -21,7 +21,7 @@ _ORDINALS = ("", "secondary ", "tertiary ", "quaternary ")
 
 
 def name_of(n: int, m: int) -> str:
-    """Name of a polynomial; "n, m" if it has no common one."""
+    """Name of the polynomial of radial degree n and azimuthal frequency m; "n, m" if it has no common one."""
     if (n, m) in _FIRST:
         return _FIRST[n, m]
     # Tilt (|m| = 1) precedes primary coma, piston and defocus (m = 0) precede primary spherical aberration.
@@ -29,12 +29,12 @@ def name_of(n: int, m: int) -> str:
     if abs(m) >= len(_FAMILIES) or ordinal >= len(_ORDINALS):
         return f"{n}, {m:+d}"
     if m == 0:
-        way = ""
+        orientation = ""
     elif m % 2:
-        way = " x" if m > 0 else " y"
+        orientation = " x" if m > 0 else " y"
     else:
-        way = " 0°" if m > 0 else f" {90 / -m:g}°"
-    return f"{_ORDINALS[ordinal]}{_FAMILIES[abs(m)]}{way}"
+        orientation = " 0°" if m > 0 else f" {90 / -m:g}°"
+    return f"{_ORDINALS[ordinal]}{_FAMILIES[abs(m)]}{orientation}"
 
 
 def noll(j: int) -> tuple[int, int]:
@@ -61,20 +61,22 @@ def term(n: int, m: int, x: Doubles, y: Doubles) -> Doubles:
     for s in range(k + 1):  # R_n^m / r^|m|, highest power first
         factor = (-1) ** s * math.comb(n - s, s) * math.comb(n - 2 * s, k - s)
         radial = radial + factor * radius2 ** (k - s)
-    turned = (x + 1j * y) ** abs(m)
-    angular = turned.imag if m < 0 else turned.real
+    rotated = (x + 1j * y) ** abs(m)  # r^|m| exp(i |m| angle)
+    angular = rotated.imag if m < 0 else rotated.real
     result: Doubles = math.sqrt((2 if m else 1) * (n + 1)) * radial * angular
     return result
 
 
 @dataclass(frozen=True, repr=False)
 class ZernikeFit(ShortText):
-    """order: "noll" or "fringe"; indices: (K,), j in that order; nm: K pairs (n, m), m < 0 for sine; names: K names.
+    """Result of fit_zernike(): K coefficients fitted to N points of a wavefront.
+
+    order: "noll" or "fringe"; indices: (K,), j in that order; nm: K pairs (n, m), m < 0 for sine; names: K names.
     coefficients_waves: (K,), of polynomials that are orthonormal on the unit disc: over a full circular pupil the
       square of each is its contribution to the mean square. Fringe coefficients of programs whose polynomials are 1 at
       the edge are larger by the root of (n + 1) (m = 0) or 2 (n + 1).
     residual_waves: RMS of the residuals.
-    pupil: (N, 2); residuals_waves: (N,), nan for rays that do not pass.
+    pupil: (N, 2), the points; residuals_waves: (N,), nan for rays that do not pass.
     field_deg: of the lens's wavefront; nan for a fit to given values.
     """
 
@@ -89,7 +91,7 @@ class ZernikeFit(ShortText):
     field_deg: float = math.nan
 
     def at(self, pupil: ArrayLike) -> Doubles:
-        """(N,): the fitted sum at points (N, 2)."""
+        """(N,): the fitted sum, in waves, at points (N, 2) of the pupil."""
         points = np.asarray(pupil, dtype=float)
         basis = [term(n, m, points[:, 0], points[:, 1]) for n, m in self.nm]
         value: Doubles = np.column_stack(basis) @ self.coefficients_waves
@@ -109,24 +111,24 @@ def fit_zernike(
     if not 1 <= terms <= 231:
         raise InputError("terms must lie between 1 and 231")
     points, values = np.asarray(pupil, dtype=float), np.asarray(opd_waves, dtype=float)
-    share = np.ones(len(values)) if weights is None else np.asarray(weights, dtype=float)
-    if points.shape != (len(values), 2) or share.shape != values.shape:
+    areas = np.ones(len(values)) if weights is None else np.asarray(weights, dtype=float)
+    if points.shape != (len(values), 2) or areas.shape != values.shape:
         raise InputError("pupil must be of shape (N, 2), opd_waves and weights of shape (N,)")
     nm = tuple((noll if order == "noll" else fringe)(j) for j in range(1, terms + 1))
-    there = np.isfinite(values)
-    if there.sum() < terms:
-        raise InputError(f"{terms} terms are to be fitted to {there.sum()} rays; use more rays, or fewer terms")
-    x, y = points[there].T
+    passes = np.isfinite(values)
+    if passes.sum() < terms:
+        raise InputError(f"{terms} terms cannot be fitted to {passes.sum()} rays; use more rays, or fewer terms")
+    x, y = points[passes].T
     basis = np.column_stack([term(n, m, x, y) for n, m in nm])
-    root = np.sqrt(share[there])
-    coefficients, _, rank, _ = np.linalg.lstsq(root[:, None] * basis, root * values[there], rcond=None)
+    root = np.sqrt(areas[passes])
+    coefficients, _, rank, _ = np.linalg.lstsq(root[:, None] * basis, root * values[passes], rcond=None)
     if rank < terms:
-        raise InputError(f"{terms} terms cannot be told apart on this pupil; use fewer")
+        raise InputError(f"{terms} terms are linearly dependent on this pupil; use fewer")
     residuals = np.full(len(values), np.nan)
-    residuals[there] = values[there] - basis @ coefficients
-    left = float(np.sqrt(np.sum(share[there] * residuals[there] ** 2) / np.sum(share[there])))
+    residuals[passes] = values[passes] - basis @ coefficients
+    rms = float(np.sqrt(np.sum(areas[passes] * residuals[passes] ** 2) / np.sum(areas[passes])))
     names = tuple(name_of(*pair) for pair in nm)
-    return ZernikeFit(order, np.arange(1, terms + 1), nm, names, coefficients, left, points, residuals)
+    return ZernikeFit(order, np.arange(1, terms + 1), nm, names, coefficients, rms, points, residuals)
 
 
 def zernike_fit(
@@ -139,7 +141,11 @@ def zernike_fit(
     samples: int = 48,
     object_distance_m: float | None = None,
 ) -> ZernikeFit:
-    """Fit of a lens's wavefront over its real stop, normalised to radius 1."""
+    """Fit of a lens's wavefront over its real stop, whose radius is normalised to 1.
+
+    order, terms: as for fit_zernike. samples: as for Lens.wavefront. Defaults: the design wavelength; the plane in
+    focus. Raises InputError as fit_zernike does, and if no light passes.
+    """
     front = lens.wavefront(field_deg, wavelength_nm=wavelength_nm, object_distance_m=object_distance_m, samples=samples)
     fit = fit_zernike(front.pupil, front.opd_waves, weights=front.weights, order=order, terms=terms)
     return replace(fit, field_deg=field_deg)
@@ -148,9 +154,9 @@ def zernike_fit(
 def plot_zernike_fit(fit: ZernikeFit, axes: Axes) -> None:
     """Plots named bars of the coefficients without piston; only the largest ones if space is short."""
     height_pt = 72 * axes.get_window_extent().height / axes.figure.dpi
-    room = max(int(height_pt / (1.15 * style.tick_size_pt())), 1)
+    max_bars = max(int(height_pt / (1.15 * style.tick_size_pt())), 1)
     size = np.abs(fit.coefficients_waves[1:])
-    chosen = np.sort(1 + np.argsort(-size)[:room])
+    chosen = np.sort(1 + np.argsort(-size)[:max_bars])
     positions = np.arange(len(chosen))
     axes.barh(positions, fit.coefficients_waves[chosen], color=style.BLUE, linewidth=0)
     style.zero_lines(axes, y=False)
@@ -158,7 +164,7 @@ def plot_zernike_fit(fit: ZernikeFit, axes: Axes) -> None:
     axes.set_ylim(len(chosen) - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
     axes.set_ylabel(f"{'Noll' if fit.order == 'noll' else 'fringe'} index")
-    axes.set_xlabel(f"coefficient / waves RMS; {fit.residual_waves:.2g} are left")
+    axes.set_xlabel(f"coefficient / waves RMS; residual {fit.residual_waves:.2g}")
     field = "" if math.isnan(fit.field_deg) else f" at {fit.field_deg:.3g}°"
     largest = "" if len(chosen) == len(size) else f", the {len(chosen)} largest"
     axes.set_title(f"Zernike polynomials{field}{largest}")

@@ -62,6 +62,7 @@ def write_extension(
     return list(figures)
 
 
+# Camera preset of a lens.
 _PRESET = """\
 import bpy
 bpy.context.camera.realcam.film = 'lens'
@@ -76,6 +77,7 @@ def _key(lens: Lens) -> str:
 
 
 def _figures(lens: Lens, text: str) -> dict[str, Any]:
+    """Data of a lens for lenses.json. text: its shader."""
     zoom = f", at {lens.zoom_position}" if lens.zoom_position else ""
     return {
         "title": (lens.title or lens.name) + zoom,
@@ -91,10 +93,12 @@ def _figures(lens: Lens, text: str) -> dict[str, Any]:
 
 
 def _file_name(title: str) -> str:
+    """Name of a lens's preset, which Blender shows without underscores."""
     return "realcam_" + "".join(c if c.isalnum() or c in "-." else "_" for c in title[:80])
 
 
 def _zipped(files: dict[str, str]) -> bytes:
+    """Zip archive of texts by file name."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, text in sorted(files.items()):

@@ -24,11 +24,13 @@ class DualArray:
 
     @staticmethod
     def constant(value: Doubles | float, count: int) -> DualArray:
-        at = np.asarray(value, float)
-        return DualArray(at, np.zeros((*at.shape, count)))
+        """A constant, whose derivatives by `count` variables are 0."""
+        array = np.asarray(value, float)
+        return DualArray(array, np.zeros((*array.shape, count)))
 
     @property
     def count(self) -> int:
+        """Number of variables."""
         return int(self.by.shape[-1])
 
     def _other(self, other: Operand) -> DualArray:
@@ -59,8 +61,8 @@ class DualArray:
 
     def __mul__(self, other: Operand) -> DualArray:
         if not isinstance(other, DualArray):
-            at = np.asarray(other, float)
-            return DualArray(self.value * at, self.by * at[..., None])
+            factor = np.asarray(other, float)
+            return DualArray(self.value * factor, self.by * factor[..., None])
         return DualArray(self.value * other.value, self.by * other.value[..., None] + self.value[..., None] * other.by)
 
     __rmul__ = __mul__
@@ -74,6 +76,7 @@ class DualArray:
         return self._other(other) / self
 
     def sqrt(self) -> DualArray:
+        """Square root; its derivative at 0 is taken to be 0."""
         root = np.sqrt(self.value)
         with np.errstate(divide="ignore"):
             return self.mapped(root, np.where(root > 0, 0.5 / root, 0.0))

@@ -11,7 +11,7 @@ from .._core import Lens
 from .dual_array import Doubles, DualArray
 from .variable import Variable
 
-# Five-point stencil of the first derivative, whose error is of fourth order in the step.
+# Central difference of the first derivative by four points; its error is of fourth order in the step.
 OFFSETS = np.array([-2.0, -1.0, 1.0, 2.0])
 WEIGHTS = np.array([1.0, -8.0, 8.0, -1.0]) / 12
 
@@ -23,6 +23,8 @@ class ChiefRayNeighbours:
     A ray has four coordinates at its start: position, mm, and direction along two axes perpendicular to the chief ray.
     start: (6,), origin and unit direction of the chief ray in front of the lens. across: (2, 3), the two axes.
     start_by: (4, V), derivatives of the chief ray's own coordinates by the variables.
+    stop: (2, 4), position: (3, 4), direction: (3, 4): derivatives of a ray's stop coordinates, and of its position and
+    optical direction at the film, by its four coordinates.
     """
 
     def __init__(
@@ -42,8 +44,8 @@ class ChiefRayNeighbours:
         to_stop: dict[str, Any] = {"frame": "axis", "surface_count": lens.stop_index + 1, "rims": False}
         # Steps of a thousandth of the stop's radius, where the stencil's error is far below rounding.
         on_stop = (self._traced(start[None], **to_stop)[1][0] @ self._basis)[:2]
-        reach = 1e-3 * lens.surfaces[lens.stop_index].clear_semi_diameter_mm
-        self._steps = reach / np.linalg.norm(on_stop, axis=0)
+        step_on_stop_mm = 1e-3 * lens.surfaces[lens.stop_index].clear_semi_diameter_mm
+        self._steps = step_on_stop_mm / np.linalg.norm(on_stop, axis=0)
         self.stop = self._derivatives(2, **to_stop)
         film = self._derivatives(6, frame="film", rims=False)
         self.position, self.direction = film[:3], film[3:]
@@ -56,15 +58,16 @@ class ChiefRayNeighbours:
         )[2:]
 
     def _derivatives(self, rows: int, **options: Any) -> DualArray:
-        """(rows, 4): derivatives of a ray's coordinates on the film, or on the stop, by its four at the start."""
+        """(rows, 4): derivatives of a ray's first `rows` coordinates on the film, or on the stop, by its four
+        coordinates at the start."""
         offsets = np.einsum("k,j,rj->jkr", OFFSETS, self._steps, self._basis).reshape(-1, 6)
         by, by_ray = self._traced(np.vstack([self._start[None], self._start + offsets]), **options)
         first = by_ray[:, :rows] @ self._basis
         weights = WEIGHTS / self._steps[:, None]
-        of_neighbours = (4, len(OFFSETS), rows)
+        neighbours = (4, len(OFFSETS), rows)
         # Second derivatives: by start and variable, and by start twice.
-        mixed = np.einsum("jk,jkrv->rjv", weights, by[1:, :rows].reshape(*of_neighbours, -1))
-        bend = np.einsum("ik,ikrj->rji", weights, first[1:].reshape(*of_neighbours, 4))
+        mixed = np.einsum("jk,jkrv->rjv", weights, by[1:, :rows].reshape(*neighbours, -1))
+        bend = np.einsum("ik,ikrj->rji", weights, first[1:].reshape(*neighbours, 4))
         return DualArray(first[0], mixed + bend @ self._start_by)
 
 
@@ -87,11 +90,12 @@ def at_film(rays: ChiefRayNeighbours, origin: DualArray, direction: DualArray) -
     index = (square[0] + square[1] + square[2]).sqrt()
     z = [direction[i] / index for i in range(3)]
     width = (z[0] * z[0] + z[2] * z[2]).sqrt()
-    none = DualArray.constant(0.0, direction.count)
-    x = [z[2] / width, none, -z[0] / width]
+    zero = DualArray.constant(0.0, direction.count)
+    # Two axes perpendicular to the chief ray z.
+    x = [z[2] / width, zero, -z[0] / width]
     y = [-(z[0] * z[1]) / width, width, -(z[1] * z[2]) / width]
-    way = -origin[2] / direction[2]
-    positions = [rays.position[i] + way * rays.direction[i] for i in range(3)]
+    distance = -origin[2] / direction[2]  # to the film, whose frame has z = 0
+    positions = [rays.position[i] + distance * rays.direction[i] for i in range(3)]
     rows = [
         axis[0] * part[0] + axis[1] * part[1] + axis[2] * part[2]
         for part in (positions, [rays.direction[i] for i in range(3)])

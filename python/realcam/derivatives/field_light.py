@@ -43,6 +43,7 @@ class FieldLight:
 
     @property
     def film_z(self) -> DualArray:
+        """z of the film, mm."""
         if self.first_order is not None:
             return self.first_order.film_distance_mm
         return DualArray.constant(0.0, self.origins.count)
@@ -50,8 +51,8 @@ class FieldLight:
     def on_film(self) -> DualArray:
         """(N, 2): intersections of the rays with the film, or with its tangent plane at the centre."""
         o, p = self.origins, self.directions
-        way = (self.film_z - o[:, 2]) / p[:, 2]
-        x, y = o[:, 0] + way * p[:, 0], o[:, 1] + way * p[:, 1]
+        distance = (self.film_z - o[:, 2]) / p[:, 2]
+        x, y = o[:, 0] + distance * p[:, 0], o[:, 1] + distance * p[:, 1]
         return DualArray(np.stack([x.value, y.value], 1), np.stack([x.by, y.by], 1))
 
 
@@ -68,29 +69,30 @@ def field_light(
 ) -> FieldLight:
     """Traces the bundle of a field point with derivatives by the variables.
 
+    film_mm: the field as a film point, in place of field_deg. samples, pattern: as for Lens.spot.
     Raises InputError if no light passes, or if the chief ray is blocked.
     """
     count = len(variables)
-    named: dict[str, Any] = {
+    keywords: dict[str, Any] = {
         "object_distance_m": object_distance_m,
         "film_mm": film_mm,
         "wavelength_nm": wavelength_nm,
     }
-    spot = lens.spot(field_deg, samples=samples, pattern=pattern, **named)
+    spot = lens.spot(field_deg, samples=samples, pattern=pattern, **keywords)
     pupil = np.vstack([spot.pupil, [[0.0, 0.0]]])
-    aimed = lens.aim(pupil, field_deg, **named)
+    aimed = lens.aim(pupil, field_deg, **keywords)
     passes = aimed.status == 0
     if not passes[-1]:
         where = f"at {field_deg:.6g} deg" if film_mm is None else f"of the film point {film_mm}"
-        raise InputError(f"the ray {where} through the middle of the stop is blocked")
+        raise InputError(f"the ray {where} through the centre of the stop is blocked")
     weights = np.where(passes[:-1], spot.weights, 0.0)
     first_order, frame = None, "film"
     if lens.is_rotational and film_mm is None:
         first_order, frame = first_order_duals(lens, variables, wavelength_nm), "axis"
-        start, path = _start(lens, first_order, aimed.origins_mm, field_deg, object_distance_m, count)
+        start, path = _start_of_field_angle(lens, first_order, aimed.origins_mm, field_deg, object_distance_m, count)
     else:
         distance = lens.focus_distance_m if object_distance_m is None else object_distance_m
-        start, path = _start_from_a_fixed_point(aimed, math.isfinite(distance), count)
+        start, path = _start_of_fixed_point(aimed, math.isfinite(distance), count)
     value = start.value
     listed = [v.as_tuple() for v in variables]
     _, _, at_stop, at_stop_by_ray = lens._ray_derivatives(
@@ -108,10 +110,10 @@ def field_light(
     )
     at_stop_by = at_stop_by_ray[:, :2] @ start.by
     at_stop_by[..., 2:] += at_stop[:, :2]
-    # Rays that do not pass have no derivatives, and keep nan.
+    # Derivatives of the rays' starts, (N, 2, V), that keep their stop coordinates; nan for rays that do not pass.
     entry_by = np.full((len(pupil), 2, count), np.nan)
-    good = np.isfinite(at_stop_by).all(axis=(1, 2))
-    entry_by[good] = -np.linalg.solve(at_stop_by[good][..., :2], at_stop_by[good][..., 2:])
+    is_finite = np.isfinite(at_stop_by).all(axis=(1, 2))
+    entry_by[is_finite] = -np.linalg.solve(at_stop_by[is_finite][..., :2], at_stop_by[is_finite][..., 2:])
     all_by = by_ray @ start.by
     all_by[..., 2:] += by
     all_by[:, 6] += path.by
@@ -139,11 +141,11 @@ def field_light(
     )
 
 
-def _start_from_a_fixed_point(aimed: AimedRays, is_finite: bool, count: int) -> tuple[DualArray, DualArray]:
+def _start_of_fixed_point(aimed: AimedRays, is_finite: bool, count: int) -> tuple[DualArray, DualArray]:
     """Starts of rays from a fixed object point: (N, 6) origins and unit directions, and (N,) paths. The first two
     derivatives are by the position along two axes perpendicular to the ray, mm."""
     o, d = aimed.origins_mm, aimed.directions
-    good = aimed.status == 0
+    passes = aimed.status == 0
     x = np.cross(np.where(np.abs(d[:, 1:2]) < 0.9, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]]), d)
     x /= np.linalg.norm(x, axis=1, keepdims=True)
     y = np.cross(d, x)
@@ -152,15 +154,15 @@ def _start_from_a_fixed_point(aimed: AimedRays, is_finite: bool, count: int) -> 
     path = np.zeros(len(o))
     if is_finite:
         # The object point: the point nearest to all rays.
-        off = np.eye(3) - d[good, :, None] * d[good, None, :]
-        point = np.linalg.solve(off.sum(0), np.einsum("nij,nj->i", off, o[good]))
+        across = np.eye(3) - d[passes, :, None] * d[passes, None, :]
+        point = np.linalg.solve(across.sum(0), np.einsum("nij,nj->i", across, o[passes]))
         distance = np.linalg.norm(o - point, axis=1)
         by[:, 3:, 0], by[:, 3:, 1] = x / distance[:, None], y / distance[:, None]
         path = np.einsum("ni,ni->n", o - o[-1], o + o[-1] - 2 * point) / (distance + distance[-1])
     return DualArray(np.hstack([o, d]), by), DualArray(path, np.zeros((len(o), count + 2)))
 
 
-def _start(
+def _start_of_field_angle(
     lens: Lens,
     first_order: FirstOrderDuals,
     origins_mm: Doubles,
@@ -174,6 +176,7 @@ def _start(
     sine, cosine = math.sin(math.radians(field_deg)), math.cos(math.radians(field_deg))
 
     def widened(number: DualArray) -> DualArray:
+        """The number with derivatives of 0 by the two coordinates."""
         return DualArray(number.value, np.concatenate([[0.0, 0.0], number.by]))
 
     pupil = widened(first_order.entrance_pupil_position_mm)
@@ -187,9 +190,9 @@ def _start(
         inverse = DualArray.constant(0.0, count + 2)
     x = origins_mm[:, 0]
     along = origins_mm[:, 1] * cosine - (origins_mm[:, 2] - pupil.value) * sine
-    lanes = np.zeros((2, len(x), count + 2))
-    lanes[0, :, 0] = lanes[1, :, 1] = 1
-    ex, ey = DualArray(x, lanes[0]), DualArray(along, lanes[1])
+    units = np.zeros((2, len(x), count + 2))
+    units[0, :, 0] = units[1, :, 1] = 1
+    ex, ey = DualArray(x, units[0]), DualArray(along, units[1])  # coordinates in the plane
     square = ex * ex + ey * ey
     root = (1.0 + square * inverse * inverse).sqrt()
     # Direction (towards + inverse * offset) / root; `root` is its length because the offset is perpendicular.

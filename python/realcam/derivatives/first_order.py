@@ -29,9 +29,11 @@ class FirstOrderDuals:
 
 
 def first_order_duals(lens: Lens, variables: Sequence[Variable], wavelength_nm: float) -> FirstOrderDuals:
+    """First-order data with derivatives by the variables. Raises InputError for lenses without rotational symmetry or
+    with terms whose derivatives are not supported."""
     if not lens.is_rotational:
         raise InputError(
-            "derivatives of first order need a centred lens of revolution; those of spots and wavefronts need none"
+            "first-order derivatives need a rotationally symmetric lens; those of spots and wavefronts do not"
         )
     lens.first_order(wavelength_nm)  # raises if the lens has no first-order data
     count = len(variables)
@@ -49,7 +51,7 @@ def first_order_duals(lens: Lens, variables: Sequence[Variable], wavelength_nm: 
         for terms in FORM_TERMS:
             if getattr(surface, terms):
                 raise InputError(
-                    f"surface {i + 1} has {terms} terms: first-order derivatives of such surfaces are not known"
+                    f"surface {i + 1} has {terms} terms, for which first-order derivatives are not supported"
                 )
         if surface.radial_terms:
             bend = [2.0 * (v.quantity == "radial" and v.surface == i and v.power == 2) for v in variables]
@@ -65,6 +67,7 @@ def first_order_duals(lens: Lens, variables: Sequence[Variable], wavelength_nm: 
             indices.append(indices[-1])
 
     def traced(height: float, slope: float, first: int, last: int) -> tuple[DualArray, DualArray]:
+        """Height and slope behind surface last - 1 of a paraxial ray in front of surface `first`."""
         y, u = DualArray.constant(height, count), DualArray.constant(slope, count)
         for i in range(first, last):
             before, behind = indices[i], indices[i + 1]
@@ -74,13 +77,14 @@ def first_order_duals(lens: Lens, variables: Sequence[Variable], wavelength_nm: 
         return y, u
 
     stop, end = lens.stop_index, len(surfaces)
+    # Behind the lens, a ray parallel to the axis with height 1, and a ray through the front vertex with slope 1.
     (y, u), (_, inclined) = traced(1, 0, 0, end), traced(0, 1, 0, end)
-    level_at_stop, inclined_at_stop = traced(1, 0, 0, stop + 1)[0], traced(0, 1, 0, stop + 1)[0]
+    parallel_at_stop, inclined_at_stop = traced(1, 0, 0, stop + 1)[0], traced(0, 1, 0, stop + 1)[0]
     behind = indices[-1] if indices[-1].value > 0 else -indices[-1]
     focal_length = -1.0 / (behind * u)
-    radius = 0.5 * lens.first_order(wavelength_nm).entrance_pupil_diameter_mm * abs(float(level_at_stop.value))
-    pupil = inclined_at_stop / level_at_stop
-    diameter = 2 * radius / level_at_stop
+    radius = 0.5 * lens.first_order(wavelength_nm).entrance_pupil_diameter_mm * abs(float(parallel_at_stop.value))
+    pupil = inclined_at_stop / parallel_at_stop
+    diameter = 2 * radius / parallel_at_stop
     chief_y, chief_u = traced(0, 1, stop, end)
     film = dual(lens.film_distance_mm, "film_distance", -1)
     # The ray through the centre of the entrance pupil with the slope 1.

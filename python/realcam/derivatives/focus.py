@@ -21,10 +21,10 @@ def film_distance_by(lens: Lens, variables: Sequence[Variable]) -> Doubles:
     all_variables = [*variables, Variable.film_distance()]
     light = field_light(lens, all_variables, 0.0, lens.wavelength_nm, pattern="rings")
     passes = light.passes[:-1]
-    share = light.weights[passes]
+    weights = light.weights[passes]
     o, p = light.origins[:-1][passes], light.directions[:-1][passes]
     mx, my = p[:, 0] / p[:, 2], p[:, 1] / p[:, 2]
     x, y = o[:, 0] - o[:, 2] * mx, o[:, 1] - o[:, 2] * my
-    z = -(x * mx + y * my).sum(share) / (mx * mx + my * my).sum(share)
+    z = -(x * mx + y * my).sum(weights) / (mx * mx + my * my).sum(weights)
     by: Doubles = np.asarray(z.by[:-1] / (1 - z.by[-1]))
     return by

@@ -36,6 +36,7 @@ QUANTITIES = (
 )
 
 
+#: Quantities that are defined for lenses without rotational symmetry, too.
 OF_ANY_LENS = (
     "spot_mm",
     "wavefront_waves",
@@ -46,8 +47,10 @@ OF_ANY_LENS = (
     "effective_focal_length_mm",
     "f_number",
 )
-NEEDS_REVOLUTION = (
-    f"derivatives of {{}} need a centred lens of revolution and a field angle; those of {', '.join(OF_ANY_LENS)} do not"
+NEEDS_SYMMETRY = (
+    "derivatives of {} need a rotationally symmetric lens and a field angle; those of "
+    + ", ".join(OF_ANY_LENS)
+    + " do not"
 )
 
 
@@ -81,7 +84,7 @@ def gradient(
     """Exact derivatives of a quantity by variables of the lens, by rays in dual numbers.
 
     quantity: "spot_mm" (RMS radius about the centroid), "wavefront_waves" (RMS), "mtf_tangential" and "mtf_sagittal"
-      (of rays alone, at frequency_per_mm), "chief_ray_height_mm", "chief_ray_angle_deg" (to the film's normal),
+      (geometric, at frequency_per_mm), "chief_ray_height_mm", "chief_ray_angle_deg" (to the film's normal),
       "distortion_percent" (against the paraxial height on the film), "length_mm" (front vertex to film), and of
       first_order(): effective_focal_length_mm, back_focal_distance_mm, front_focal_distance_mm, f_number,
       entrance_pupil_position_mm.
@@ -99,36 +102,37 @@ def gradient(
     listed = checked(self, variables)
     nm = self.wavelength_nm if wavelength_nm is None else wavelength_nm
     if quantity in (*FIRST_ORDER, "length_mm"):
-        # Raises for variables without an effect, as ray tracing does.
+        # Traces no rays: checks the variables as for the other quantities.
         self._ray_derivatives(np.zeros((0, 3)), np.zeros((0, 3)), [v.as_tuple() for v in listed])
-        number = _of_first_order(self, quantity, listed, nm)
+        result = _of_first_order(self, quantity, listed, nm)
     else:
         if quantity not in OF_ANY_LENS and (film_mm is not None or not self.is_rotational):
-            raise InputError(NEEDS_REVOLUTION.format(quantity))
+            raise InputError(NEEDS_SYMMETRY.format(quantity))
         light = field_light(
             self, listed, field_deg, nm, object_distance_m=object_distance_m, film_mm=film_mm, samples=samples
         )
         x, y = film_mm if film_mm is not None and any(film_mm) else (0.0, 1.0)
         tangential = x / math.hypot(x, y), y / math.hypot(x, y)
-        number = _of_light(quantity, light, nm, frequency_per_mm, remove, tangential)
-    return Gradient(quantity, float(number.value), tuple(listed), np.asarray(number.by))
+        result = _of_bundle(quantity, light, nm, frequency_per_mm, remove, tangential)
+    return Gradient(quantity, float(result.value), tuple(listed), np.asarray(result.by))
 
 
 def _of_first_order(lens: Lens, quantity: str, variables: Sequence[Variable], wavelength_nm: float) -> DualArray:
+    """ "length_mm", or one of FIRST_ORDER, in dual numbers. Raises InputError."""
     if quantity == "length_mm":
         length = sum(surface.thickness_mm for surface in lens.surfaces[:-1]) + lens.film_distance_mm
         by = [float(v.quantity in ("thickness", "film_distance")) for v in variables]
         return DualArray(np.array(length), np.array(by))
     if lens.is_rotational:
-        number: DualArray = getattr(first_order_duals(lens, variables, wavelength_nm), quantity)
-        return number
+        result: DualArray = getattr(first_order_duals(lens, variables, wavelength_nm), quantity)
+        return result
     if quantity not in OF_ANY_LENS:
-        raise InputError(NEEDS_REVOLUTION.format(quantity))
+        raise InputError(NEEDS_SYMMETRY.format(quantity))
     focal_length, f_number = focal_length_and_f_number(lens, variables, wavelength_nm)
     return f_number if quantity == "f_number" else focal_length
 
 
-def _of_light(
+def _of_bundle(
     quantity: str,
     light: FieldLight,
     wavelength_nm: float,
@@ -136,55 +140,63 @@ def _of_light(
     remove: str | None,
     tangential: tuple[float, float],
 ) -> DualArray:
+    """A quantity of a traced ray bundle in dual numbers. tangential: unit vector on the film. Raises InputError."""
     if quantity == "wavefront_waves":
         return wavefront_rms(light, wavelength_nm, remove)
-    at = light.on_film()
+    points = light.on_film()
     if quantity == "spot_mm":
-        return spot_rms(light, at)
+        return spot_rms(light, points)
     if quantity in ("mtf_tangential", "mtf_sagittal"):
         if frequency_per_mm is None or not frequency_per_mm >= 0:
-            raise InputError("an MTF is that of a frequency: frequency_per_mm is required")
+            raise InputError("the MTF needs a frequency_per_mm of 0 or more")
         x, y = tangential if quantity == "mtf_tangential" else (tangential[1], -tangential[0])
-        return transfer(light, x * at[:, 0] + y * at[:, 1], frequency_per_mm)
+        return transfer(light, x * points[:, 0] + y * points[:, 1], frequency_per_mm)
     if quantity == "chief_ray_angle_deg":
         return chief_ray_angle_deg(light)
-    height = at[-1, 1]
+    height = points[-1, 1]
     if quantity == "chief_ray_height_mm":
         return height
     if light.field_deg == 0:
-        raise InputError("there is no distortion on the axis")
+        raise InputError("distortion is not defined on the axis")
     if not abs(light.field_deg) < 90:
-        raise InputError("there is no paraxial height at 90 deg and beyond")
+        raise InputError("distortion is not defined for fields of 90 deg and more")
     assert light.first_order is not None
     paraxial = math.tan(math.radians(light.field_deg)) * light.first_order.paraxial_height_mm
     return 100 * (height / paraxial - 1.0)
 
 
-def of_passing(light: FieldLight, number: DualArray) -> tuple[Doubles, DualArray]:
-    """Weights, normalised to the sum 1, and values of the bundle's rays that pass, without the chief ray."""
+def of_passing(light: FieldLight, values: DualArray) -> tuple[Doubles, DualArray]:
+    """Selects the rays that pass, without the chief ray, from values of all rays, (N, ...).
+
+    Returns their weights, which sum to 1, and their values.
+    """
     passes = light.passes[:-1]
-    share = light.weights[passes]
-    return share / share.sum(), number[:-1][passes]
+    weights = light.weights[passes]
+    return weights / weights.sum(), values[:-1][passes]
 
 
-def spot_rms(light: FieldLight, at: DualArray) -> DualArray:
-    share, points = of_passing(light, at)
-    middle = points.sum(share)
-    off = points - middle
-    square = off * off
-    return (square[:, 0] + square[:, 1]).sum(share).sqrt()
+def spot_rms(light: FieldLight, film_points: DualArray) -> DualArray:
+    """RMS radius about the centroid. film_points: (N, 2), of all rays, mm."""
+    weights, points = of_passing(light, film_points)
+    offsets = points - points.sum(weights)
+    square = offsets * offsets
+    return (square[:, 0] + square[:, 1]).sum(weights).sqrt()
 
 
 def transfer(light: FieldLight, across: DualArray, frequency_per_mm: float) -> DualArray:
-    """Geometric MTF: |weighted sum of exp(2 pi i f x)| over the rays."""
-    share, x = of_passing(light, across)
+    """Geometric MTF: |weighted sum of exp(2 pi i f x)| over the rays.
+
+    across: (N,), coordinates x of the film points in the direction in which the pattern varies, mm.
+    """
+    weights, x = of_passing(light, across)
     phase = 2 * np.pi * frequency_per_mm * x
-    real = phase.mapped(np.cos(phase.value), -np.sin(phase.value)).sum(share)
-    imaginary = phase.mapped(np.sin(phase.value), np.cos(phase.value)).sum(share)
+    real = phase.mapped(np.cos(phase.value), -np.sin(phase.value)).sum(weights)
+    imaginary = phase.mapped(np.sin(phase.value), np.cos(phase.value)).sum(weights)
     return (real * real + imaginary * imaginary).sqrt()
 
 
 def chief_ray_angle_deg(light: FieldLight) -> DualArray:
+    """Angle of the chief ray to the film's normal in the yz plane."""
     p = light.directions[-1]
     rise = p[1] / p[2]
     return rise.mapped(np.degrees(np.arctan(rise.value)), np.degrees(1 / (1 + rise.value**2)))
@@ -194,7 +206,7 @@ def wavefront_rms(light: FieldLight, wavelength_nm: float, remove: str | None) -
     """RMS wavefront error in waves, as by Lens.wavefront with the reference sphere about the chief ray's film point."""
     if remove not in (None, "tilt", "focus"):
         raise InputError(f'cannot remove "{remove}"; expected tilt, focus or None')
-    share, waves = of_passing(light, opd_waves(light, wavelength_nm))
+    weights, waves = of_passing(light, opd_waves(light, wavelength_nm))
     x, y = light.pupil[:-1][light.passes[:-1]].T
     basis = [np.ones_like(x)]
     if remove is not None:
@@ -203,28 +215,34 @@ def wavefront_rms(light: FieldLight, wavelength_nm: float, remove: str | None) -
         basis.append(x * x + y * y)
     # The residual of a least-squares fit is linear in the fitted values, so it applies to derivatives, too.
     f = np.array(basis).T
-    fit = np.linalg.solve(f.T @ (share[:, None] * f), f.T * share)
-    left = DualArray(waves.value - f @ (fit @ waves.value), waves.by - f @ (fit @ waves.by))
-    return (left * left).sum(share).sqrt()
+    fit = np.linalg.solve(f.T @ (weights[:, None] * f), f.T * weights)
+    residual = DualArray(waves.value - f @ (fit @ waves.value), waves.by - f @ (fit @ waves.by))
+    return (residual * residual).sum(weights).sqrt()
 
 
 def opd_waves(light: FieldLight, wavelength_nm: float) -> DualArray:
-    """(N,): optical path differences in waves, positive where the wavefront is ahead of the reference sphere."""
+    """(N,): optical path differences in waves, positive where the wavefront is ahead of the reference sphere.
+
+    The reference sphere is centred at the chief ray's film point and passes through the centre of the exit pupil, on
+    the chief ray. A ray (o, d) reaches it at the distance -b.d - R sqrt(1 - m / R^2) from o, with b = o - centre and m
+    the squared distance of the ray from the centre. Without the term -R, which is common to all rays, that is
+    (m / R) / (1 + sqrt(1 - m / R^2)) - b.d, also for a plane (R infinite).
+    """
     o, p, film = light.origins, light.directions, light.film_z
     size = (p[:, 0] * p[:, 0] + p[:, 1] * p[:, 1] + p[:, 2] * p[:, 2]).sqrt()
     n = size[-1]
     d = [p[:, i] / size for i in range(3)]
-    at = light.on_film()[-1]
+    centre = light.on_film()[-1]
     if light.first_order is None:
         assert light.exit_pupil is not None
         curvature = 1.0 / light.exit_pupil()
     elif abs(light.field_deg) < 1e-6 * 180 / math.pi:
         curvature = d[2][-1] / (film - light.first_order.exit_pupil_position_mm)
     else:
-        curvature = d[1][-1] / at[1]
-    b = [o[:, 0] - at[0], o[:, 1] - at[1], o[:, 2] - film]
-    off = [b[1] * d[2] - b[2] * d[1], b[2] * d[0] - b[0] * d[2], b[0] * d[1] - b[1] * d[0]]
-    square = (off[0] * off[0] + off[1] * off[1] + off[2] * off[2]) * curvature
+        curvature = d[1][-1] / centre[1]  # the exit pupil's centre is where the chief ray crosses the axis
+    b = [o[:, 0] - centre[0], o[:, 1] - centre[1], o[:, 2] - film]
+    moment = [b[1] * d[2] - b[2] * d[1], b[2] * d[0] - b[0] * d[2], b[0] * d[1] - b[1] * d[0]]
+    square = (moment[0] * moment[0] + moment[1] * moment[1] + moment[2] * moment[2]) * curvature
     along = b[0] * d[0] + b[1] * d[1] + b[2] * d[2]
     path = light.paths + n * (square / (1.0 + (1.0 - square * curvature).sqrt()) - along)
     return (path[-1] - path) * (1e6 / wavelength_nm)

@@ -24,10 +24,10 @@ def focal_length_and_f_number(
     Raises InputError for rotationally symmetric lenses that are shifted or tilted against the film.
     """
     chief = lens.aim([[0.0, 0.0]], film_mm=(0.0, 0.0), wavelength_nm=wavelength_nm)
-    towards = chief.directions[0]
-    x = np.cross([0.0, 1.0, 0.0] if abs(towards[1]) < 0.9 else [1.0, 0.0, 0.0], towards)
+    direction = chief.directions[0]
+    x = np.cross([0.0, 1.0, 0.0] if abs(direction[1]) < 0.9 else [1.0, 0.0, 0.0], direction)
     x /= np.linalg.norm(x)
-    across = np.array([x, np.cross(towards, x)])
+    across = np.array([x, np.cross(direction, x)])
     basis = np.zeros((6, 4))
     basis[:3, :2] = basis[3:, 2:] = across.T
 
@@ -47,19 +47,19 @@ def focal_length_and_f_number(
     _, stop_by, stop_by_start = traced(frame="axis", surface_count=lens.stop_index + 1)
     numbers, by, by_start = traced(frame="film")
     # Derivatives of the film point by the ray's six coordinates behind the lens.
-    slope, way = numbers[3:5] / numbers[5], -numbers[2] / numbers[5]
-    on_film = np.hstack([np.eye(2), -slope[:, None], way * np.eye(2), -way * slope[:, None]])
+    slope, distance = numbers[3:5] / numbers[5], -numbers[2] / numbers[5]
+    on_film = np.hstack([np.eye(2), -slope[:, None], distance * np.eye(2), -distance * slope[:, None]])
     start_by = -np.linalg.solve(
         np.vstack([stop_by_start[:2], on_film @ by_start]), np.vstack([stop_by[:2], on_film @ by])
     )
     rays = ChiefRayNeighbours(
-        lens, variables, wavelength_nm, np.hstack([chief.origins_mm[0], towards]), across, start_by
+        lens, variables, wavelength_nm, np.hstack([chief.origins_mm[0], direction]), across, start_by
     )
     behind = DualArray(numbers, by + by_start @ start_by)
     film, _ = at_film(rays, behind[:3], behind[3:])
     power, stop = film[2:, :2], rays.stop[:, :2]
 
-    def grows(matrix: DualArray) -> Doubles:
+    def log_growth(matrix: DualArray) -> Doubles:
         """Derivatives of half the logarithm of the determinant."""
         return np.asarray(0.5 * np.einsum("ij,jiv->v", np.linalg.inv(matrix.value), matrix.by))
 
@@ -68,11 +68,11 @@ def focal_length_and_f_number(
     if abs(size / abs(first_order.effective_focal_length_mm) - 1) > 1e-6:
         # Lens.first_order undoes the shift or tilt.
         raise InputError(
-            "a lens that was shifted or tilted before its film has the focal length and f-number that it had before: "
-            "differentiate it without the move"
+            "shift and tilt against the film do not change focal length and f-number: "
+            "differentiate the lens without them"
         )
-    growth = -grows(power)
+    growth = -log_growth(power)  # relative derivatives of the focal length
     length = float(np.copysign(size, first_order.effective_focal_length_mm))
     f_number = first_order.f_number
-    f_growth = growth + grows(stop)
+    f_growth = growth + log_growth(stop)  # and of the f-number
     return DualArray(np.array(length), length * growth), DualArray(np.array(f_number), f_number * f_growth)

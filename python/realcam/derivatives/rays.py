@@ -106,7 +106,7 @@ def backpropagate_rays(
 
     origins_mm, directions, wavelength_nm, start: the input rays, as for Lens.trace.
     of_origins, of_directions: (N, 3), of_optical_paths: (N,): the function's derivatives by the origins, unit
-    directions and optical paths of the result; None: it does not depend on them. Entries of rays that do not pass are
+    directions and optical paths of the result; None: it does not depend on them. Values of rays that do not pass are
     ignored. The time hardly depends on the number of variables: for a scalar function of many rays, this is many times
     faster than ray_derivatives. Raises InputError for wrong shapes, and for variables that the lens does not have.
     """

@@ -15,11 +15,12 @@ if TYPE_CHECKING:
     import torch
 
 
+#: Quantities that Variable.set supports.
 SETTABLE = ("curvature", "thickness", "conic", "aspheric", "index", "tilt", "decentre")
 
 
 def with_values(lens: Lens, variables: Sequence[Variable], values: Sequence[float]) -> Lens:
-    """Returns the lens with its variables set. Raises InputError if that lens cannot be built."""
+    """Returns the lens with these values of its variables. Raises InputError if that lens cannot be built."""
     surfaces: dict[int, Surface] = {}
     for variable, value in zip(variables, values, strict=True):
         surface = surfaces.get(variable.surface, lens.surfaces[variable.surface])
@@ -40,7 +41,8 @@ def trace_with_torch(
     """Lens.trace of the lens with `values` (V,) for its variables, differentiable by torch.autograd.
 
     origins_mm, directions: (N, 3), lens frame, in host memory. variables: curvatures, thicknesses, conics, aspheric
-    coefficients, indices, tilts and decentres.
+    coefficients, indices, tilts and decentres. wavelength_nm: None is the design wavelength. start: "film" or "scene",
+    the side on which the rays enter the lens.
     Returns origins, mm, and unit directions (N, 3), optical paths, mm (N,), in float64, and which rays pass (N,). Rays
     that do not pass are zero and have no derivatives. First derivatives by origins, directions and values are
     supported; second derivatives are not. Raises InputError for variables that the lens does not have, ImportError
@@ -51,12 +53,12 @@ def trace_with_torch(
     listed = checked(lens, variables)
     for variable in listed:
         if variable.quantity not in SETTABLE:
-            raise InputError(f'a lens cannot be given a value of "{variable.quantity}"; {", ".join(SETTABLE)} can')
+            raise InputError(f'the quantity "{variable.quantity}" cannot be set; expected one of {", ".join(SETTABLE)}')
     if tuple(values.shape) != (len(listed),):
         raise InputError(f"values must be {len(listed)} numbers, one for each variable")
     for tensor in (origins_mm, directions, values):
         if tensor.device.type != "cpu":
-            raise InputError(f"rays with derivatives are traced on the host, and a tensor lies on {tensor.device}")
+            raise InputError(f"tensors must be in host memory; found one on {tensor.device}")
 
     def numbers(tensor: torch.Tensor) -> np.ndarray:
         array: np.ndarray = tensor.detach().double().numpy()
@@ -79,11 +81,11 @@ def trace_with_torch(
         @staticmethod
         @torch.autograd.function.once_differentiable  # type: ignore[untyped-decorator]
         def backward(ctx: Any, of_origins: Any, of_directions: Any, of_paths: Any, _: Any) -> Any:
-            given = ctx.saved_tensors
+            inputs = ctx.saved_tensors  # origins, directions, values
             found = backpropagate_rays(
                 ctx.changed,
-                numbers(given[0]),
-                numbers(given[1]),
+                numbers(inputs[0]),
+                numbers(inputs[1]),
                 listed,
                 of_origins=of_origins.numpy(),
                 of_directions=of_directions.numpy(),
@@ -92,6 +94,6 @@ def trace_with_torch(
                 start=start,
             )
             parts = found.by_origins, found.by_directions, found.by
-            return tuple(torch.from_numpy(part).to(of.dtype) for part, of in zip(parts, given, strict=True))
+            return tuple(torch.from_numpy(part).to(to.dtype) for part, to in zip(parts, inputs, strict=True))
 
     return Trace.apply(origins_mm, directions, values)  # type: ignore[no-any-return]

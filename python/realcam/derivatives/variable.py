@@ -85,6 +85,7 @@ class Variable:
         return Variable("film_distance", -1, lower=lower_mm, upper=upper_mm)
 
     def as_tuple(self) -> tuple[str, int, int, int]:
+        """The variable without its bounds, as the core identifies it."""
         return self.quantity, self.surface, self.power, self.power_y
 
     def __str__(self) -> str:
@@ -103,6 +104,7 @@ class Variable:
         return f"{self.quantity}{which} of surface {self.surface + 1}"
 
     def of(self, surface: Surface) -> float:
+        """Value of the variable; `surface` is the one it belongs to. Only for the quantities that `set` supports."""
         if self.quantity == "curvature":
             return surface.curvature_per_mm
         if self.quantity == "thickness":
@@ -116,6 +118,8 @@ class Variable:
         return surface.aspheric_coefficients.get(self.power, 0.0)
 
     def set(self, surface: Surface, value: float) -> Surface:
+        """Returns the surface with another value of the variable: a curvature, thickness, conic, aspheric coefficient,
+        index, tilt or decentre."""
         if self.quantity == "curvature":
             return surface.replace(radius_of_curvature_mm=math.inf if value == 0 else 1 / value)
         if self.quantity == "thickness":
@@ -152,6 +156,7 @@ class Variable:
 
 
 def _axis(name: str) -> int:
+    """Index of an axis. Raises InputError."""
     if name not in ("x", "y", "z"):
         raise InputError(f'unknown axis "{name}"; expected x, y or z')
     return "xyz".index(name)
@@ -164,11 +169,12 @@ def check_surface_exists(lens: Lens, surface: int) -> None:
 
 
 def checked(lens: Lens, variables: Sequence[Variable]) -> list[Variable]:
-    """Returns the variables. Raises InputError if there are none, or for duplicates and unknown quantities."""
+    """Returns the variables as a list. Raises InputError if there are none, or for duplicates and unknown
+    quantities."""
     if not variables:
-        raise InputError("there is nothing to change: expected at least one Variable")
+        raise InputError("variables must have at least one Variable")
     if len({v.as_tuple() for v in variables}) < len(variables):
-        raise InputError("a variable is named twice")
+        raise InputError("variables must be distinct")
     for variable in variables:
         if variable.quantity not in QUANTITIES:
             raise InputError(f'unknown quantity "{variable.quantity}"; expected one of {", ".join(QUANTITIES)}')

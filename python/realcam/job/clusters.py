@@ -13,7 +13,7 @@ from typing import Any
 from .._core import InputError
 from ..installation import imported
 
-_ANSWERS_WITHIN_S = 20
+_TIMEOUT_S = 20  # for the connection to a scheduler
 
 
 @contextmanager
@@ -43,19 +43,21 @@ def dask_executor(*, workers: int, scheduler: str | None = None) -> Iterator[con
                     silence_logs=logging.CRITICAL,
                 )
                 source = {"address": stack.enter_context(cluster)}
-            client = stack.enter_context(distributed.Client(**source, timeout=_ANSWERS_WITHIN_S, set_as_default=False))
+            client = stack.enter_context(distributed.Client(**source, timeout=_TIMEOUT_S, set_as_default=False))
         except (OSError, TimeoutError, ValueError) as error:
-            at = scheduler or "this machine"
-            raise InputError(f"{at}: no Dask scheduler answers there: {_line_of(error)}") from None
+            location = scheduler or "this machine"
+            raise InputError(f"{location}: no Dask scheduler answers there: {_line_of(error)}") from None
         except RuntimeError as error:  # a process was ended before it was ready
             raise InputError(f"this machine: Dask's worker processes did not start: {_line_of(error)}") from None
         yield client.get_executor(pure=False)
 
 
 def has_dask() -> bool:
+    """True if Dask is installed."""
     return find_spec("distributed") is not None
 
 
 def _line_of(error: BaseException) -> str:
+    """First line of an error's message, or its type."""
     text = error.strerror if isinstance(error, FileNotFoundError) else str(error)
     return (text or "").strip().partition("\n")[0] or type(error).__name__

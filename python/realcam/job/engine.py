@@ -13,12 +13,13 @@ from .._core import InputError, __version__
 from ..session import Session
 
 # The kernels of these instruction sets do the same arithmetic, with fused multiply-add; those of v2 have none.
-_ALIKE = frozenset({"v3", "v4"})
+_WITH_EQUAL_BITS = frozenset({"v3", "v4"})
 
 
 @dataclass(frozen=True)
 class Engine:
-    """Version of realcam and its hardware: "CPU" or the GPU's name, Embree version, instruction set."""
+    """The software and hardware that determine the bits of samples: the version of realcam, the device ("CPU" or the
+    GPU's name), the Embree version, and the instruction set."""
 
     realcam: str
     device: str
@@ -27,13 +28,14 @@ class Engine:
 
     @classmethod
     def of(cls, session: Session) -> Engine:
+        """The engine of a session."""
         name = session.device
         found = re.fullmatch(r"CPU \(Embree ([^,]+), x86-64-([^,]+), .*\)", name)
         if not found:
-            # One GPU of several computes the samples of a part.
+            # A session with several GPUs computes each unit's samples on one of them.
             return cls(__version__, name.removeprefix("GPU (").removesuffix(")").partition(" + ")[0])
         # A machine with only v3 computes the same bits as one with v4.
-        instruction_set = "v3" if found[2] in _ALIKE else found[2]
+        instruction_set = "v3" if found[2] in _WITH_EQUAL_BITS else found[2]
         return cls(__version__, "CPU", found[1], instruction_set)
 
     @property
@@ -48,8 +50,8 @@ class Engine:
         """Raises InputError if the running version of realcam differs."""
         if self.realcam != __version__:
             raise InputError(
-                f"{folder}: realcam {self.realcam} made this job, and this is realcam {__version__}; all machines of a "
-                "job need the same version"
+                f"{folder}: this job was made by realcam {self.realcam}, and this is realcam {__version__}; all "
+                "machines of a job need the same version"
             )
 
     @contextmanager
@@ -72,7 +74,7 @@ class Engine:
         """Raises InputError if this process computes with another engine."""
         here = Engine.of(session)
         if here != self:
-            raise InputError(f"{folder}: the job wants {self}, and here is {here}; their samples would differ")
+            raise InputError(f"{folder}: the job requires {self}; this process has {here}, whose samples would differ")
 
 
 def probe_of(session: Session) -> str:

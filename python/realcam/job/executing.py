@@ -19,7 +19,7 @@ _TRIES = 3  # attempts at a task whose process is lost
 
 
 def do_all(
-    wanted: Callable[[], Iterable[Task] | None],
+    available: Callable[[], Iterable[Task] | None],
     submit: Callable[[Task], concurrent.futures.Future[Outcome]],
     *,
     window: int,
@@ -29,22 +29,23 @@ def do_all(
 ) -> None:
     """Submits tasks to an executor until all are done, by this executor or by others.
 
-    wanted: returns the tasks that can be done now, or None when all are done. submit: submits one task. window: the
+    available: returns the tasks that can be done now, or None when all are done. submit: submits one task. window: the
     largest number of tasks in flight. report: called about once a second; an exception from it ends the work.
     location, noun: the folder and the word for a task, for messages.
 
     Raises InputError with the error of a task, or if a process is lost.
     """
-    given: dict[concurrent.futures.Future[Outcome], Task] = {}
+    running: dict[concurrent.futures.Future[Outcome], Task] = {}
     losses: dict[Task, int] = {}
 
     def lost(error: BaseException) -> str:
-        words = str(error).strip().partition("\n")[0] or type(error).__name__
-        return f"{location}: a process of the executor was lost ({words:.200}); what is done stays, start again"
+        """Message for a lost process."""
+        text = str(error).strip().partition("\n")[0] or type(error).__name__
+        return f"{location}: a process of the executor was lost ({text:.200}); finished {noun}s remain, start again"
 
     next_report_s = 0.0
 
-    def tell() -> None:
+    def report_each_second() -> None:
         nonlocal next_report_s
         if time.monotonic() >= next_report_s:
             report()
@@ -52,18 +53,18 @@ def do_all(
 
     try:
         while True:
-            if len(given) < (window + 1) // 2:
-                tasks = wanted()
+            if len(running) < (window + 1) // 2:
+                tasks = available()
                 if tasks is None:
                     return
-                in_hand = set(given.values())
-                for task in islice((task for task in tasks if task not in in_hand), window - len(given)):
-                    given[submit(task)] = task
-            done, _ = concurrent.futures.wait(given, 1.0, concurrent.futures.FIRST_COMPLETED)
+                in_progress = set(running.values())
+                for task in islice((task for task in tasks if task not in in_progress), window - len(running)):
+                    running[submit(task)] = task
+            done, _ = concurrent.futures.wait(running, 1.0, concurrent.futures.FIRST_COMPLETED)
             for future in done:
-                task = given.pop(future)
+                task = running.pop(future)
                 try:
-                    why = future.result()
+                    message = future.result()
                 except (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError) as error:
                     raise InputError(lost(error)) from None
                 except Exception as error:
@@ -71,9 +72,9 @@ def do_all(
                     if losses[task] == _TRIES:
                         raise InputError(f"{noun} {task}: {lost(error)}") from None
                     continue
-                if why:
-                    raise InputError(why)
-            tell()
+                if message:
+                    raise InputError(message)
+            report_each_second()
     finally:
-        for future in given:
+        for future in running:
             future.cancel()

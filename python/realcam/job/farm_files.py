@@ -9,7 +9,8 @@ from pathlib import Path
 
 from .._core import InputError
 
-# Directives of the script with {name} and {tasks}, variable of the task's index, and variable of its number of cores.
+# By batch system: directives of the script with {name} and {tasks}, variable of the task's index from 1, and variable
+# of its number of cores.
 _ARRAYS = {
     "slurm": (
         "#SBATCH --job-name={name}\n#SBATCH --array=1-{tasks}\n#SBATCH --ntasks=1\n#SBATCH --requeue",
@@ -21,7 +22,10 @@ _ARRAYS = {
 
 
 def array_script(batch_system: str, folder: Path, tasks: int) -> str:
-    """Returns a script for Slurm's `sbatch` or PBS's `qsub`: an array of tasks, each with its part of the job."""
+    """Returns a script for Slurm's `sbatch` or PBS's `qsub`: an array of tasks, each with its part of the job.
+
+    batch_system: "slurm" or "pbs". folder: of the job. tasks: number of tasks.
+    """
     directives, task, threads = _ARRAYS[batch_system]
     # A directive is a bash comment, so it ends at the end of the line regardless of quotes.
     return f"""#!/bin/bash
@@ -34,12 +38,13 @@ exec realcam job work --quiet --part "{task}/{tasks}" --threads "{threads}" {shl
 def openjd_template(folder: Path, tasks: int) -> str:
     """Returns a job template of Open Job Description 2023-09 as JSON, with the steps work and finish.
 
+    folder: of the job. tasks: number of tasks of the step work.
     Raises InputError for a path that the format cannot express: it has no escape for the braces of its expressions.
     """
     path = str(folder.absolute())
     if "{{" in path or "}}" in path or not path.isprintable():
         raise InputError(
-            f"{path!a:.100}: Open Job Description takes no path with double braces or control characters; "
+            f"{path!a:.100}: a path for Open Job Description must not have double braces or control characters; "
             "choose another folder"
         )
     output = {

@@ -66,6 +66,7 @@ class Job:
 
     @property
     def path(self) -> Path:
+        """The job's folder."""
         return self._folder.path
 
     @property
@@ -89,18 +90,18 @@ class Job:
         device: str | None = None,
         progress: ProgressCallback | None = None,
     ) -> None:
-        """Takes the samples that are missing.
+        """Renders the missing units.
 
         executor: its processes take one unit at a time, on this machine or others that can access the same folder;
-        None: this process takes all units. part: (3, 8) limits this process to the third eighth of the units, so that 8
-        processes share the work; with a noise goal it also takes units of other parts that the next round needs.
+        None: this process renders all units. part: (3, 8) limits this process to the third eighth of the units, so that
+        8 processes share the work; with a noise goal it also takes units of other parts that the next round needs.
         threads: number for each process; 0: all cores. device: device of this process, "cuda:1" say, if that of the job
         is "cuda". progress: called with the fraction done; the work stops if it returns False.
         Raises InputError, DeviceError, and ImageFileError, if a disk is full, say: finished units remain, and work()
         continues from there.
         """
         if part is not None and not (1 <= part[0] <= part[1] <= 100000 and executor is None):
-            raise InputError(f"part {part[0]} of {part[1]}: a part from 1 to the number of parts is expected")
+            raise InputError(f"part {part[0]} of {part[1]}: expected a part from 1 to the number of parts")
         remove_leftovers(self.path)
         for name in self.status().damaged:
             self._folder.discard(name)
@@ -123,7 +124,7 @@ class Job:
         if not is_all or any(self._folder.missing(shot, round_) for round_ in rounds):
             status = self.status()
             missing = f"{status.units_known - status.units_done} of {status.units_known} units are missing"
-            raise InputError(f"{self.path}: {missing}; realcam job work does them")
+            raise InputError(f"{self.path}: {missing}; run realcam job work to render them")
         film, stored = worker.film(shot), worker.shot(shot)
         image = worker.session(shot)._image_of(film.film)
         return replace(image, settings=stored.settings, plan=stored.plan, shortfall=film.shortfall)
@@ -133,38 +134,41 @@ class Job:
         return Worker(self._folder).shot(self._index_of(name)).tone
 
     def _index_of(self, name: str | None) -> int:
+        """Index of a shot; None: the only one. Raises InputError."""
         if name is None and len(self.names) == 1:
             return 0
         if name not in self.names:
-            raise InputError(f"{self.path}: the job has {len(self.names)} shots; specify the name of one")
+            raise InputError(f"{self.path}: the job has {len(self.names)} shots; specify the name of one of them")
         return self.names.index(name)
 
     def _work_with(self, executor: concurrent.futures.Executor, threads: int, report: _Report) -> None:
+        """Renders the missing units in the processes of an executor."""
         worker, folder = Worker(self._folder, threads), str(self.path.absolute())
 
-        def wanted() -> list[Unit] | None:
+        def missing_units() -> list[Unit] | None:
             found = [worker.missing(shot) for shot in range(len(self.names))]
             return [unit for missing in found if missing for unit in missing[1]] or None
 
         def submit(unit: Unit) -> concurrent.futures.Future[str]:
             return executor.submit(run_unit, folder, self._folder.id, unit, threads)
 
-        do_all(wanted, submit, window=_WINDOW, report=report, location=str(self.path), noun="unit")
+        do_all(missing_units, submit, window=_WINDOW, report=report, location=str(self.path), noun="unit")
 
 
 class _Report:
     """Reports the fraction done, about once a second."""
 
     def __init__(self, job: Job, progress: ProgressCallback | None) -> None:
-        self._job, self._progress, self._next, self._most = job, progress, 0.0, 0.0
+        self._job, self._progress, self._next, self._largest = job, progress, 0.0, 0.0
 
     def __call__(self, is_last: bool = False) -> None:
         if self._progress is None or (time.monotonic() < self._next and not is_last):
             return
         begin = time.monotonic()
-        # The number of samples that a noise goal still needs is an estimate, so the fraction may decrease.
-        self._most = max(self._most, self._job.status().share)
-        if self._progress(self._most) is False:
-            raise InputError(f"{self._job.path}: stopped; work() goes on from here")
+        # The number of samples that a noise goal still needs is an estimate, so the fraction may decrease;
+        # the largest one is reported.
+        self._largest = max(self._largest, self._job.status().share)
+        if self._progress(self._largest) is False:
+            raise InputError(f"{self._job.path}: stopped; work() continues from here")
         # Listing many units takes time; this keeps its cost below about 2 %.
         self._next = time.monotonic() + max(1.0, 50 * (time.monotonic() - begin))

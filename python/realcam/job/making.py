@@ -43,11 +43,12 @@ def check_is_new(path: Path) -> None:
     """Raises InputError if a file or folder of this name exists."""
     system_name(path)
     if os.path.lexists(path):
-        why = "this job is there already" if (path / JOB_FILE).exists() else "this is there already"
+        why = "this job exists already" if (path / JOB_FILE).exists() else "this name is in use"
         raise InputError(f"{path}: {why}; choose another name for a new job")
 
 
 def _written(path: Path, shots: Mapping[str, Shot], device: str, tile: tuple[int, int] | None) -> JobFolder:
+    """Writes the files of a job into an empty folder; arguments as for Job.make."""
     records: list[ShotRecord] = []
     probes: dict[str, str] = {}
     scenes: list[tuple[Scene, str]] = []  # with their digests: many shots share a scene, which may be large

@@ -62,6 +62,11 @@ def status_of(folder: JobFolder) -> JobStatus:
 
 
 def _seconds_left(last: list[float], done: int, share: float) -> float:
+    """Estimated remaining seconds; inf: unknown.
+
+    last: sorted times at which the latest units were written. done: number of finished units. share: fraction of the
+    work done.
+    """
     if share >= 1:
         return 0.0
     if len(last) < 2 or last[-1] <= last[0] or share <= 0:

@@ -14,13 +14,13 @@ from .._core import _SAMPLES_PER_SUM, _SHARING_TILE_SIDE, InputError
 if TYPE_CHECKING:
     from .._core import _Region
 
-Digest = str
-Size = tuple[int, int]
+Digest = str  # SHA-256 in hexadecimal
+Size = tuple[int, int]  # width, height
 
-MOST_UNITS = 1 << 20  # per shot
-LONGEST_SIDE = 1 << 15  # of a film, in pixels
+MAX_UNITS = 1 << 20  # per shot
+MAX_SIDE = 1 << 15  # of a film or tile, in pixels
 _SAMPLES_PER_UNIT = 1 << 22  # takes one core about a second
-_MOST_SPLATS_PER_SUM = 8  # each unit of light tracing writes a film as large as the picture
+_MAX_LIGHT_UNITS = 8  # each unit of light tracing writes a film as large as the picture
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,7 @@ class Unit:
 
     @property
     def file_name(self) -> str:
+        """Name of the unit's file within the folder of its shot."""
         at = "" if self.region is None else f"-{self.region[0]:05d}-{self.region[1]:05d}"
         return f"{self.round:03d}-{self.kind}-{self.first:08d}{at}.npz"
 
@@ -109,10 +110,11 @@ class ShotRecord:
         """Raises InputError if the shot has more units than a folder of files can hold."""
         (width, height), (across, down) = self.resolution, self.tile
         count = -(-width // across) * -(-height // down) * -(-(self.spp or 1) // _SAMPLES_PER_SUM)
-        if count > MOST_UNITS:
-            raise InputError(f'shot "{self.name:.40}" has {count} units; at most {MOST_UNITS} are expected')
+        if count > MAX_UNITS:
+            raise InputError(f'shot "{self.name:.40}" has {count} units; expected at most {MAX_UNITS}')
 
     def _tiles(self) -> Iterator[_Region]:
+        """Yields the regions of the tiles, row by row."""
         (width, height), (across, down) = self.resolution, self.tile
         for row in range(0, height, down):
             for column in range(0, width, across):
@@ -122,12 +124,12 @@ class ShotRecord:
         """Yields ranges of samples for light tracing. Its sums are integers, so that any division gives the same
         result."""
         width, height = self.resolution
-        count = min(_MOST_SPLATS_PER_SUM, spp, max(1, width * height * spp // (4 * _SAMPLES_PER_UNIT)))
+        count = min(_MAX_LIGHT_UNITS, spp, max(1, width * height * spp // (4 * _SAMPLES_PER_UNIT)))
         yield from pairwise(first + spp * i // count for i in range(count + 1))
 
 
 def tile_for(resolution: tuple[int, int], spp: int | None, is_cpu: bool) -> tuple[int, int]:
-    """Default size of a unit: about a second of work for one core, or complete rows for a GPU."""
+    """Default width and height of a unit in pixels: about a second of work for one core, or complete rows for a GPU."""
     samples = min(spp or _SAMPLES_PER_SUM, _SAMPLES_PER_SUM)
     width, height = resolution
     if not is_cpu:
@@ -138,7 +140,7 @@ def tile_for(resolution: tuple[int, int], spp: int | None, is_cpu: bool) -> tupl
 
 def checked_tile(tile: tuple[int, int]) -> tuple[int, int]:
     """Rounds a unit's size up to whole tiles in which pixels share samples. Raises InputError if it is out of range."""
-    if not all(1 <= side <= LONGEST_SIDE for side in tile):
-        raise InputError(f"a tile must have 1 to {LONGEST_SIDE} pixels along each side")
+    if not all(1 <= side <= MAX_SIDE for side in tile):
+        raise InputError(f"a tile must have 1 to {MAX_SIDE} pixels along each side")
     width, height = (-(-side // _SHARING_TILE_SIDE) * _SHARING_TILE_SIDE for side in tile)
     return width, height

@@ -23,7 +23,7 @@ from .executing import Outcome
 from .folder import DamagedFileError, JobFolder
 from .units import Round, Unit
 
-_MOST_BYTES = 1 << 36  # of a scene's file
+_MAX_SCENE_BYTES = 1 << 36  # of a scene's file
 
 
 @dataclass(frozen=True)
@@ -32,31 +32,34 @@ class StoredShot:
 
     camera: Camera
     settings: RenderSettings
-    tone: str
-    plan: str
+    tone: str  #: tone curve
+    plan: str  #: description of the plan, for the picture
 
 
 def pack_values(*values: Any, **more: str) -> bytes:
-    """Returns an archive of realcam values, to be read by `read_values`."""
+    """Returns an archive of realcam values, keyed by their type names, and of texts `more`; see read_values."""
     buffers: list[np.ndarray] = []
-    about = {type(value).__name__: described(value, buffers) for value in values}
-    return packed(about | more, {"buffer": np.concatenate([*buffers, np.empty(0, np.uint8)])})
+    descriptions = {type(value).__name__: described(value, buffers) for value in values}
+    return packed(descriptions | more, {"buffer": np.concatenate([*buffers, np.empty(0, np.uint8)])})
 
 
 def read_values(path: Path, digest: str) -> dict[str, Any]:
-    """Returns the values by type name. Raises InputError if the file does not match the digest."""
-    about, arrays = read_archive(path, limit_bytes=_MOST_BYTES, digest=digest)
+    """Returns the values and texts of an archive by name. Raises InputError if the file does not match the digest."""
+    descriptions, arrays = read_archive(path, limit_bytes=_MAX_SCENE_BYTES, digest=digest)
     try:
         return {
             key: value if isinstance(value, str) else from_description(value, arrays["buffer"], key)
-            for key, value in about.items()
+            for key, value in descriptions.items()
         }
     except (RealcamError, KeyError, AttributeError) as error:
         raise InputError(f"{path}: {error if isinstance(error, RealcamError) else 'this file is malformed'}") from None
 
 
 class ShotFilm:
-    """Accumulated film of a shot, to which rounds are added in order."""
+    """Accumulated film of a shot, to which rounds are added in order.
+
+    shot: index in the job. rounds: number of rounds added so far.
+    """
 
     def __init__(self, folder: JobFolder, shot: int, stored: StoredShot) -> None:
         self._folder, self._shot, self._stored = folder, shot, stored
@@ -88,18 +91,19 @@ class ShotFilm:
         else:
             assert counts is not None
             self._noise.add(exposure, counts, traced)
-        wanted, taken = self._noise.next(), float(samples.sum())
-        if wanted.any():
-            left = max(self._noise.left(), float(wanted.sum(dtype="int64")))
+        next_counts, taken = self._noise.next(), float(samples.sum())
+        if next_counts.any():
+            left = max(self._noise.left(), float(next_counts.sum(dtype="int64")))
             begin = round_.samples + round_.spp
-            more = {"traces_lights": self._noise.traces_lights, "taken": taken, "left": left}
-            return Round(round_.number + 1, begin, int(wanted.max()), wanted, **more)  # type: ignore[arg-type]
+            progress = {"traces_lights": self._noise.traces_lights, "taken": taken, "left": left}
+            return Round(round_.number + 1, begin, int(next_counts.max()), next_counts, **progress)  # type: ignore[arg-type]
         if self._record.has_layers:
             return Round(round_.number + 1, 0, self._mean_spp, is_of_layers=True, taken=taken)
         return None
 
     @property
     def shortfall(self) -> str:
+        """Message if the noise goal was not reached; empty otherwise."""
         return self._noise.shortfall() if self._noise else ""
 
 
@@ -114,12 +118,13 @@ class Worker:
         self._threads, self._device = threads, device or folder.device
         self._session: Session | None = None
         self._scene: tuple[str, Scene] | None = None
-        self._checked: set[str] = set()  # scenes whose probe agrees
-        self._at = -1  # index of the session's shot
+        self._checked: set[str] = set()  # digests of the scenes for which this machine computes the same samples
+        self._session_shot = -1  # index of the session's shot
         self._rounds: dict[int, list[Round]] = {}
         self._films: dict[int, ShotFilm] = {}
 
     def shot(self, index: int) -> StoredShot:
+        """Reads a shot. Raises InputError if its file is damaged."""
         record = self.folder.shots[index]
         path = self.folder.directory("shots") / f"{index:05d}.npz"
         values = read_values(path, record.digest)
@@ -130,10 +135,11 @@ class Worker:
             raise InputError(f"{path}: this file is malformed") from None
         spp = None if settings.spp == "auto" else settings.spp
         if (camera.film.resolution, spp) != (record.resolution, record.spp):
-            raise InputError(f"{path}: its resolution or number of samples is not that of job.json")
+            raise InputError(f"{path}: its resolution or number of samples differs from job.json")
         return stored
 
     def scene(self, digest: str) -> Scene:
+        """Reads a scene, unless it is the last one used. Raises InputError if its file is damaged."""
         if self._scene is None or self._scene[0] != digest:
             self._scene = None  # frees its memory before the next one is read
             path = self.folder.directory("scenes") / f"{digest[:16]}.npz"
@@ -142,7 +148,7 @@ class Worker:
 
     def session(self, index: int) -> Session:
         """Returns the session, set to a shot. Raises InputError if this machine's samples differ from the job's."""
-        if self._session is None or self._at != index:
+        if self._session is None or self._session_shot != index:
             scene = self.folder.shots[index].scene
             if scene not in self._checked:
                 first = next(i for i, shot in enumerate(self.folder.shots) if shot.scene == scene)
@@ -151,8 +157,8 @@ class Worker:
                 self.folder.engine.check(self._session, str(self.folder.path))
                 if probe_of(self._session) != self.folder.probes[scene]:
                     raise InputError(
-                        f"{self.folder.path}: this machine computes other samples than the one that made the job, "
-                        "although it names itself as the same; other libraries or another processor may be why"
+                        f"{self.folder.path}: the samples of this machine differ from those of the one that made the "
+                        "job, although their descriptions are equal; their libraries or processors may differ"
                     )
                 self._checked.add(scene)
             self._set(index)
@@ -160,6 +166,7 @@ class Worker:
         return self._session
 
     def _set(self, index: int) -> None:
+        """Sets the session to a shot."""
         shot, scene = self.shot(index), self.scene(self.folder.shots[index].scene)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # already shown when the job was made
@@ -168,7 +175,7 @@ class Worker:
             else:
                 with self.folder.engine.pinned():
                     self._session = Session(scene, shot.camera, shot.settings, device=self._device)
-        self._at = index
+        self._session_shot = index
 
     def run(self, unit: Unit) -> None:
         """Renders a unit and writes it, unless its file exists."""
@@ -185,6 +192,7 @@ class Worker:
             raise InputError(f"{self.folder.path}: {error.strerror or error}") from None
 
     def _expose(self, unit: Unit) -> Any:
+        """Renders a unit. Returns its FilmPart."""
         session = self.session(unit.shot)
         if unit.region is None:
             return session.expose_traced_light(unit.first, unit.spp)
@@ -221,6 +229,7 @@ class Worker:
             self.folder.write_round(shot, len(rounds), following)
 
     def _following(self, shot: int, known: list[Round]) -> Round | None:
+        """Computes the round after the known ones, which are complete; None: there is no further one."""
         stored = self.shot(shot)
         if not known:
             return Round(0, 0, _core._Rounds.first_samples(stored.settings))
@@ -256,28 +265,29 @@ class Worker:
         if part is None:
             order.shuffle(indices)
         for shot in indices:
-            is_counted = records[shot].spp is not None
+            is_counted = records[shot].spp is not None  # the number of samples is fixed
             while (found := self.missing(shot)) is not None:
                 units = list(records[shot].units(shot, found[0]))
-                ends = [(shot + at / len(units)) / len(records) * n for at in range(len(units))]
-                own = {unit for unit, end in zip(units, ends, strict=True) if int(end) == k - 1}
-                mine = [unit for unit in found[1] if unit in own]
-                others = [] if is_counted else [unit for unit in found[1] if unit not in own]
-                order.shuffle(others if part else mine)
-                for unit in mine + others:
+                ends = [(shot + i / len(units)) / len(records) * n for i in range(len(units))]
+                of_part = {unit for unit, end in zip(units, ends, strict=True) if int(end) == k - 1}
+                own = [unit for unit in found[1] if unit in of_part]
+                others = [] if is_counted else [unit for unit in found[1] if unit not in of_part]
+                order.shuffle(others if part else own)
+                for unit in own + others:
                     self.run(unit)
                     yield
                 if is_counted:  # the remaining units belong to other parts
                     break
 
 
-class _Kept(threading.local):
+class _LastWorker(threading.local):
     """The worker last used by a thread of an executor."""
 
-    key: tuple[str, str, int] | None = None
+    key: tuple[str, str, int] | None = None  #: folder, id of the job, and number of threads
     worker: Worker | None = None
 
     def worker_of(self, folder: str, job: str, threads: int) -> Worker:
+        """Returns the worker of a job, by its id. Raises InputError if the folder has another job."""
         if self.worker is None or self.key != (folder, job, threads):
             self.worker, opened = None, JobFolder.open(folder)
             if opened.id != job:
@@ -286,13 +296,13 @@ class _Kept(threading.local):
         return self.worker
 
 
-_KEPT = _Kept()
+_LAST_WORKER = _LastWorker()
 
 
 def run_unit(folder: str, job: str, unit: Unit, threads: int) -> Outcome:
     """Renders a unit in a process of an executor. Returns an error message, empty on success."""
     try:
-        _KEPT.worker_of(folder, job, threads).run(unit)
+        _LAST_WORKER.worker_of(folder, job, threads).run(unit)
     except RealcamError as error:
         return str(error)
     return ""

@@ -49,13 +49,13 @@ class Crossing:
     `wavelength_variable`, the constant first; empty if it does not depend on the wavelength.
     """
 
-    vertex_mm: float
+    vertex_mm: float  #: z of the vertex
     curvature_per_mm: float
     conic: float
     asphere: Asphere | None
-    rim_mm: float
-    hole_mm: float
-    iris: Iris | None
+    rim_mm: float  #: clear semi-diameter
+    hole_mm: float  #: radius of a central hole or obstruction; 0: none
+    iris: Iris | None  #: None: no blades at this surface
     sign_in: int
     sign_out: int
     index_change: float
@@ -139,6 +139,7 @@ def index_behind(lens: Lens, index: int, nm: float) -> float:
 
 
 def _rim_mm(lens: Lens, index: int) -> float:
+    """Clear semi-diameter of a surface, or radius of a circular stop."""
     clear = lens.surfaces[index].clear_semi_diameter_mm
     if index != lens.stop_index or _iris(lens):
         return clear
@@ -146,14 +147,16 @@ def _rim_mm(lens: Lens, index: int) -> float:
 
 
 def _iris(lens: Lens) -> Iris | None:
+    """Blades of the diaphragm; None: it is circular."""
     apothem_mm = _iris_apothem_mm(lens)
     if apothem_mm is None:
         return None
-    turns = 2 * np.pi * np.arange(lens.iris_blades) / lens.iris_blades
-    return Iris(apothem_mm, lens.iris_rounding / apothem_mm, tuple(np.radians(lens.iris_rotation_deg) + turns))
+    azimuths = 2 * np.pi * np.arange(lens.iris_blades) / lens.iris_blades
+    return Iris(apothem_mm, lens.iris_rounding / apothem_mm, tuple(np.radians(lens.iris_rotation_deg) + azimuths))
 
 
 def _asphere(surface: Surface) -> Asphere | None:
+    """Aspheric part of a surface; None if it has none."""
     if not surface.aspheric_coefficients:
         return None
     # Slightly beyond the rim, so that a ray that just misses the rim still intersects the surface there.
@@ -164,17 +167,19 @@ def _asphere(surface: Surface) -> Asphere | None:
     for power, coefficient in surface.aspheric_coefficients.items():
         powers[power // 2 - 2] = coefficient * reach**power
     terms = np.polynomial.Polynomial(powers)(np.polynomial.Polynomial([0.5, 1])).coef
-    sags = [surface.sag_mm(reach * share) for share in np.linspace(0, 1, 257)]
+    sags = [surface.sag_mm(reach * fraction) for fraction in np.linspace(0, 1, 257)]
     margin = 0.02 * np.ptp(sags) + 1e-3 * reach
     return Asphere(reach, tuple(terms.tolist()), min(sags) - margin, max(sags) + margin)
 
 
 def _index_change(lens: Lens, index: int, nm: float) -> float:
+    """n'^2 / n^2 - 1 at a surface, for light towards the film."""
     ratio = index_behind(lens, index, nm) / index_behind(lens, index - 1, nm)
     return ratio * ratio - 1
 
 
 def _index_terms(lens: Lens, index: int) -> tuple[float, ...]:
+    """Polynomial of _index_change over wavelength_variable; empty if it is constant."""
     x = np.cos(np.pi * (np.arange(32) + 0.5) / 32)
     zero, slope = wavelength_variable(np.inf), wavelength_variable(POLE_NM + 1) - wavelength_variable(np.inf)
     change = np.array([_index_change(lens, index, nm) for nm in POLE_NM + slope / (x - zero)])
@@ -182,5 +187,6 @@ def _index_terms(lens: Lens, index: int) -> tuple[float, ...]:
 
 
 def _fit(x: np.ndarray, values: np.ndarray) -> tuple[float, ...]:
+    """Coefficients of the polynomial of degree DEGREE through values at x, -1 to 1, the constant first."""
     series = np.polynomial.Chebyshev.fit(x, values, DEGREE, domain=[-1, 1])
     return tuple(series.convert(kind=np.polynomial.Polynomial).coef.tolist())

@@ -12,7 +12,7 @@ from .._core import Camera, Film, Lens
 from .tables import Table
 
 ANGLES = 64  # cells over the tangent of half the point's angle to the axis
-CLOSENESSES = 16  # cells over the point's inverse distance
+CLOSENESSES = 16  # cells over the point's inverse distance, its closeness
 NEAREST = 1.25  # smallest distance in the table, in radii of the lens's front
 
 
@@ -33,9 +33,9 @@ class Entries:
         d = rays.directions[passed].astype(float)
         self.nearest_mm = NEAREST * float(np.linalg.norm(o, axis=1).max())
         closenesses = np.linspace(0, 1, 2 * CLOSENESSES + 1) / self.nearest_mm
-        seen = [entry_coordinates(o, d, closeness) for closeness in closenesses]
-        self.largest_half_tangent = 1.001 * float(max(half_tangent.max() for half_tangent, _, _ in seen))
-        rows = [rectangles(seen[2 * k : 2 * k + 3], self.largest_half_tangent) for k in range(CLOSENESSES)]
+        coordinates = [entry_coordinates(o, d, closeness) for closeness in closenesses]
+        self.largest_half_tangent = 1.001 * float(max(half_tangent.max() for half_tangent, _, _ in coordinates))
+        rows = [rectangles(coordinates[2 * k : 2 * k + 3], self.largest_half_tangent) for k in range(CLOSENESSES)]
         self.table = Table(np.concatenate(rows))
 
     def sample(self, x: Any, u: Any) -> tuple[Any, Any]:
@@ -47,7 +47,7 @@ class Entries:
         half_tangent = radial / dr.maximum(1 - t.z, 1e-6)
         column = half_tangent * (ANGLES / self.largest_half_tangent)
         row = dr.minimum(self.nearest_mm / distance, 1) * CLOSENESSES
-        is_seen = (column < ANGLES) & (t.z < 1)
+        is_covered = (column < ANGLES) & (t.z < 1)
         column = mi.UInt32(dr.minimum(column, ANGLES - 1))
         row = mi.UInt32(dr.minimum(row, CLOSENESSES - 1))
         low, high, half_width = self.table(row * ANGLES + column)
@@ -59,19 +59,21 @@ class Entries:
         # angle.
         outwards = mi.Vector3f(-t.z * cos, -t.z * sin, radial)
         point = mi.Point3f(along * outwards + across * mi.Vector3f(-sin, cos, 0))
-        way = point - x
-        squared = dr.squared_norm(way)
-        cosine = dr.abs(dr.dot(way, t)) * dr.rsqrt(squared)
+        connection = point - x
+        squared = dr.squared_norm(connection)
+        cosine = dr.abs(dr.dot(connection, t)) * dr.rsqrt(squared)
         solid_angle = 2 * half_width * (high - low) * cosine / squared
-        return point, dr.select(is_seen, solid_angle, 0.0)
+        return point, dr.select(is_covered, solid_angle, 0.0)
 
 
 def entry_coordinates(
     o: np.ndarray, d: np.ndarray, closeness_per_mm: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coordinates of rays for the table at one inverse distance from the front vertex: tangents of half the angle to
-    the axis of the scene points on the rays, and their intersections with the planes of Entries, along and across the
-    meridional plane, mm."""
+    """Coordinates of rays for the table at one inverse distance from the front vertex.
+
+    o, d: (N, 3), origins in mm from the front vertex, and unit directions towards the scene. Returns tangents of half
+    the angle to the axis of the scene points on the rays, and their intersections with the planes of Entries, along and
+    across the meridional plane, mm."""
     if closeness_per_mm > 0:
         b = np.sum(o * d, axis=1)
         s = -b + np.sqrt(b**2 - np.sum(o**2, axis=1) + closeness_per_mm**-2)
@@ -87,11 +89,11 @@ def entry_coordinates(
     return radial / (1 - t[:, 2]), np.sum(entry * outwards, axis=1), np.sum(entry * across, axis=1)
 
 
-def rectangles(seen: list[tuple[np.ndarray, np.ndarray, np.ndarray]], largest_half_tangent: float) -> np.ndarray:
+def rectangles(coordinates: list[tuple[np.ndarray, np.ndarray, np.ndarray]], largest_half_tangent: float) -> np.ndarray:
     """(ANGLES, 3): lowest and highest coordinate along and largest across the meridional plane; zeros if no light
     passes. Includes the rectangles of neighbouring cells, to cover gaps between the rays."""
     low, high, half = np.full(ANGLES, np.inf), np.full(ANGLES, -np.inf), np.zeros(ANGLES)
-    for half_tangent, along, across in seen:
+    for half_tangent, along, across in coordinates:
         column = np.minimum((half_tangent * ANGLES / largest_half_tangent).astype(int), ANGLES - 1)
         np.minimum.at(low, column, along)
         np.maximum.at(high, column, along)
@@ -99,5 +101,5 @@ def rectangles(seen: list[tuple[np.ndarray, np.ndarray, np.ndarray]], largest_ha
     near = np.clip(np.arange(ANGLES)[:, None] + [-1, 0, 1], 0, ANGLES - 1)
     low, high, half = low[near].min(axis=1), high[near].max(axis=1), half[near].max(axis=1)
     margin = np.maximum(high - low, half) / 16
-    found = np.stack([low - margin, high + margin, half + margin], axis=1)
-    return np.where(half[:, None] > 0, found, 0.0)
+    bounds = np.stack([low - margin, high + margin, half + margin], axis=1)
+    return np.where(half[:, None] > 0, bounds, 0.0)

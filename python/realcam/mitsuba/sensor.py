@@ -14,8 +14,9 @@ from .entries import Entries
 from .pupil import Pupil
 from .trace import LensTrace, opaque
 
-NUMBERS = ("focus_distance_m", "f_number", "film_width_mm", "film_height_mm", "exposure_time_s")
-FARTHEST = float(np.finfo(np.float32).max)
+#: Properties that can be changed by mi.traverse.
+PARAMETERS = ("focus_distance_m", "f_number", "film_width_mm", "film_height_mm", "exposure_time_s")
+FARTHEST = float(np.finfo(np.float32).max)  # maximum length of a ray that passes the lens
 
 
 class RealcamSensor(mi.Sensor):  # type: ignore[misc]
@@ -34,7 +35,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         self.to_world = mi.Transform4f(self.world_transform())
         if not np.allclose(np.linalg.svd(matrix_of(self.to_world)[:3, :3], compute_uv=False), 1, atol=1e-4):
             raise InputError(
-                "to_world of the sensor realcam has a scale; scene_unit_m says how long a unit of the scene is"
+                "to_world of the sensor realcam must not have a scale; use scene_unit_m for the length of a scene unit"
             )
         width, height = film_sides(lens, properties, self.film().size())
         lens = lens.with_rings(f_number=properties.get("f_number"), focus_m=properties.get("focus_distance_m"))
@@ -46,6 +47,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         self.set_lens(lens)
 
     def set_lens(self, lens: Lens) -> None:
+        """Sets the focused and stopped-down lens, and computes its tables for the current film."""
         self.lens = lens
         columns, rows = self.film().size()
         film = Film(number(self.film_width_mm), number(self.film_height_mm), (int(columns), int(rows)))
@@ -62,7 +64,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
 
     def traverse(self, callback: Any) -> None:
         super().traverse(callback)
-        for name in NUMBERS:
+        for name in PARAMETERS:
             callback.put(name, getattr(self, name), mi.ParamFlags.NonDifferentiable)
         callback.put("to_world", self.to_world, mi.ParamFlags.Differentiable | mi.ParamFlags.Discontinuous)
 
@@ -92,12 +94,12 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         ray = mi.RayDifferential3f()
         weight, passed, variable = self.set_ray(ray, time, wavelength_sample, position_sample, aperture_sample, active)
         columns, rows = self.film().crop_size()
-        beside = []
+        differentials = []
         for step in (mi.Vector2f(1 / columns, 0), mi.Vector2f(0, 1 / rows)):
-            o_beside, d_beside, _, _, exists = self.leave_lens(position_sample + step, aperture_sample, variable)
-            beside.append(dr.select(passed & exists, self.point_in_scene(o_beside), ray.o))
-            beside.append(dr.select(passed & exists, self.direction_in_scene(d_beside), ray.d))
-        ray.o_x, ray.d_x, ray.o_y, ray.d_y = beside
+            o, d, _, _, exists = self.leave_lens(position_sample + step, aperture_sample, variable)
+            differentials.append(dr.select(passed & exists, self.point_in_scene(o), ray.o))
+            differentials.append(dr.select(passed & exists, self.direction_in_scene(d), ray.d))
+        ray.o_x, ray.d_x, ray.o_y, ray.d_y = differentials
         ray.has_differentials = True
         return ray, weight
 
@@ -113,25 +115,25 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         vertex = mi.Vector3f(0, 0, self.lens.vertices_mm[0])
         entry, solid_angle = self.entries.sample(x - vertex, sample)
         d = dr.normalize(entry - (x - vertex))
-        share, variable = self.wavelength_of(it)
+        spectral_weight, variable = self.wavelength_of(it)
         o, p, first, passed, _ = self.to_film(entry, d, variable)
-        landing = dr.fma(p, (self.film_distance_mm - o.z) / p.z, o)
-        uv, is_inside = self.pixel_of(landing)
+        film_point = dr.fma(p, (self.film_distance_mm - o.z) / p.z, o)
+        uv, is_inside = self.pixel_of(film_point)
         active = passed & is_inside & (solid_angle > 0) & active
 
-        sample_of = mi.DirectionSample3f()
-        sample_of.p = self.point_in_scene(mi.Point3f(first + vertex))
-        way = sample_of.p - it.p
-        sample_of.dist = dr.norm(way)
-        sample_of.d = way / sample_of.dist
-        sample_of.n = self.direction_in_scene(mi.Vector3f(0, 0, -1))
-        sample_of.uv = uv
-        sample_of.time = it.time
-        sample_of.pdf = dr.select(active, 1.0, 0.0)
-        sample_of.delta = mi.Bool(False)
+        result = mi.DirectionSample3f()
+        result.p = self.point_in_scene(mi.Point3f(first + vertex))
+        connection = result.p - it.p
+        result.dist = dr.norm(connection)
+        result.d = connection / result.dist
+        result.n = self.direction_in_scene(mi.Vector3f(0, 0, -1))
+        result.uv = uv
+        result.time = it.time
+        result.pdf = dr.select(active, 1.0, 0.0)
+        result.delta = mi.Bool(False)
         # Etendue of the connection in scene units, over the area of the crop window on the film.
         weight = solid_angle * self.exposure_time_s * self.mm_per_unit**2 / self.crop_area_mm2()
-        return sample_of, share * dr.select(active, weight, 0.0)
+        return result, spectral_weight * dr.select(active, weight, 0.0)
 
     def leave_lens(self, position_sample: Any, aperture_sample: Any, variable: Any) -> tuple[Any, Any, Any, Any, Any]:
         """Traces a ray from the film to the front of the lens. Returns point (mm) and unit direction in the lens frame,
@@ -147,21 +149,21 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
     ) -> tuple[Any, Any, Any]:
         """Fills in the ray. Returns its weight, whether it passes the lens, and its wavelength_variable. A ray that the
         lens blocks gets a maximum length of 0."""
-        ray.wavelengths, share, variable = self.drawn_wavelengths(wavelength_sample, active)
+        ray.wavelengths, spectral_weight, variable = self.sampled_wavelengths(wavelength_sample, active)
         o, d, weight, passed, _ = self.leave_lens(position_sample, aperture_sample, variable)
         ray.o = self.point_in_scene(dr.select(passed, o, mi.Point3f(0)))
         ray.d = self.direction_in_scene(dr.select(passed, d, mi.Vector3f(0, 0, -1)))
         ray.maxt = dr.select(passed, FARTHEST, 0.0)
         ray.time = time
-        return share * dr.select(passed & active, weight * self.exposure_time_s, 0.0), passed, variable
+        return spectral_weight * dr.select(passed & active, weight * self.exposure_time_s, 0.0), passed, variable
 
-    def drawn_wavelengths(self, sample: Any, active: Any) -> tuple[Any, Any, Any]:
+    def sampled_wavelengths(self, sample: Any, active: Any) -> tuple[Any, Any, Any]:
         """Samples the wavelengths of a ray. Returns them, the weight of each, and the ray's wavelength_variable. A ray
         has a single path, so that all of its wavelengths equal the first one sampled."""
         if not self.is_dispersive:
             return type(mi.Ray3f().wavelengths)(), mi.Spectrum(1), None
-        drawn, weights = self.sample_wavelengths(dr.zeros(mi.SurfaceInteraction3f), sample, active)
-        return type(drawn)(drawn[0]), mi.Spectrum(weights[0]), wavelength_variable(drawn[0])
+        sampled, weights = self.sample_wavelengths(dr.zeros(mi.SurfaceInteraction3f), sample, active)
+        return type(sampled)(sampled[0]), mi.Spectrum(weights[0]), wavelength_variable(sampled[0])
 
     def wavelength_of(self, it: Any) -> tuple[Any, Any]:
         """Returns the weight of each wavelength of light that arrives at the sensor, and its wavelength_variable."""
@@ -169,9 +171,9 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
             return mi.Spectrum(1), None
         first = it.wavelengths[0]
         is_known = first > 0
-        share = mi.Spectrum(dr.select(is_known, 0.0, 1.0))
-        share[0] = dr.select(is_known, float(len(it.wavelengths)), 1.0)
-        return share, wavelength_variable(dr.select(is_known, first, self.lens.wavelength_nm))
+        weight = mi.Spectrum(dr.select(is_known, 0.0, 1.0))
+        weight[0] = dr.select(is_known, float(len(it.wavelengths)), 1.0)
+        return weight, wavelength_variable(dr.select(is_known, first, self.lens.wavelength_nm))
 
     def film_point(self, sample: Any) -> tuple[Any, Any]:
         """Returns the film point in mm, lens frame, of a point of the crop window; the image on the film is upside
@@ -190,17 +192,21 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         return mi.Point2f(u, v), (u >= 0) & (u < crop[0]) & (v >= 0) & (v < crop[1])
 
     def crop_area_mm2(self) -> Any:
-        share = dr.prod(self.film().crop_size()) / dr.prod(self.film().size())
-        return self.film_width_mm * self.film_height_mm * share
+        """Area of the crop window on the film."""
+        fraction = dr.prod(self.film().crop_size()) / dr.prod(self.film().size())
+        return self.film_width_mm * self.film_height_mm * fraction
 
     def point_in_scene(self, p: Any) -> Any:
+        """Scene coordinates of a point of the lens frame, mm."""
         local = mi.Point3f(-p.x, p.y, self.film_position_mm - p.z) / self.mm_per_unit
         return self.to_world @ local
 
     def direction_in_scene(self, d: Any) -> Any:
+        """Scene coordinates of a direction of the lens frame."""
         return self.to_world @ mi.Vector3f(-d.x, d.y, -d.z)
 
     def point_in_lens(self, p: Any) -> Any:
+        """Lens coordinates, mm, of a point of the scene."""
         local = self.mm_per_unit * (self.to_world.inverse() @ p)
         return mi.Point3f(-local.x, local.y, self.film_position_mm - local.z)
 
@@ -216,6 +222,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
 
 
 def lens_of(properties: Any) -> Lens:
+    """The lens of the properties `lens` and `zoom`. Raises InputError and LensFileError."""
     if "lens" not in properties:
         raise InputError('the sensor realcam needs a lens: the name of a bundled one ("double-gauss-50mm"), or a file')
     lens = Lens.load(properties["lens"])
@@ -229,7 +236,7 @@ def set_shutter(properties: Any) -> None:
     """Sets Mitsuba's shutter_close from exposure_time_s (default 1/125 s). Raises InputError if both are specified."""
     if "exposure_time_s" in properties:
         if "shutter_close" in properties:
-            raise InputError("the sensor realcam takes exposure_time_s or shutter_close, and was given both")
+            raise InputError("the sensor realcam accepts exposure_time_s or shutter_close, not both")
         time = properties["exposure_time_s"]
         if not 0 < time < np.inf:
             raise InputError(f"exposure_time_s must be a positive number; it is {time:g}")
@@ -254,9 +261,11 @@ def film_sides(lens: Lens, properties: Any, size: Any) -> tuple[float, float]:
 
 
 def matrix_of(transform: Any) -> np.ndarray:
+    """(4, 4): matrix of a Transform4f of any variant."""
     matrix = np.array(transform.matrix, dtype=float)
     return matrix[..., 0] if matrix.ndim == 3 else matrix
 
 
 def number(value: Any) -> float:
+    """A mi.Float of size 1 as a Python number."""
     return float(value[0]) if dr.is_jit_v(mi.Float) else float(value)

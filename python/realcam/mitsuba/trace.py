@@ -24,12 +24,15 @@ def opaque(value: float) -> Any:
 
 
 class LensTrace:
-    """Traces rays through a list of surfaces; rays start relative to the vertex of the first one."""
+    """Traces rays through a list of surfaces in the order of the ray; rays start relative to the vertex of the first
+    one."""
 
     def __init__(self, crossings: list[Crossing]) -> None:
         self.crossings = crossings
         vertices = [crossing.vertex_mm for crossing in crossings]
-        self.shifts = [opaque(here - before) for before, here in zip(vertices[:1] + vertices, vertices, strict=False)]
+        self.shifts = [
+            opaque(vertex - previous) for previous, vertex in zip(vertices[:1] + vertices, vertices, strict=False)
+        ]
         self.rims = [opaque(crossing.rim_mm) for crossing in crossings]
 
     def __call__(self, o: Any, p: Any, variable: Any) -> tuple[Any, Any, Any, Any, Any]:
@@ -39,27 +42,29 @@ class LensTrace:
         o, p: point in mm and optical direction. variable: wavelength_variable of each ray, or None for the design
         wavelength.
         """
-        open_to_it = exists = mi.Bool(True)
+        is_unblocked = exists = mi.Bool(True)
         first = None
         for crossing, shift, rim in zip(self.crossings, self.shifts, self.rims, strict=True):
             o = mi.Point3f(o.x, o.y, o.z - shift)
-            o, normal, met = intersect(crossing, o, p)
+            o, normal, hits = intersect(crossing, o, p)
             first = o if first is None else first
             along = dr.dot(p, normal)
             radicand = dr.fma(squared_index_change(crossing, variable), dr.squared_norm(p), along * along)
             p = dr.fma(normal, crossing.sign_out * dr.sqrt(dr.maximum(radicand, 0)) - along, p)
-            exists = exists & met & (radicand >= 0)
-            open_to_it = open_to_it & lets_through(crossing, rim, o)
-        return o, p, first, exists & open_to_it, exists
+            exists = exists & hits & (radicand >= 0)
+            is_unblocked = is_unblocked & lets_through(crossing, rim, o)
+        return o, p, first, exists & is_unblocked, exists
 
 
 def squared_index_change(crossing: Crossing, variable: Any) -> Any:
+    """n'^2 / n^2 - 1 at a surface. variable: wavelength_variable; None: the design wavelength."""
     if variable is None or not crossing.index_terms:
         return mi.Float(crossing.index_change)
     return horner(crossing.index_terms, variable)
 
 
 def horner(terms: tuple[float, ...], x: Any) -> Any:
+    """Polynomial with the constant first."""
     value = mi.Float(terms[-1])
     for term in reversed(terms[:-1]):
         value = dr.fma(value, x, term)
@@ -67,6 +72,7 @@ def horner(terms: tuple[float, ...], x: Any) -> Any:
 
 
 def lets_through(crossing: Crossing, rim: Any, at: Any) -> Any:
+    """True if a point of the surface, mm from its vertex, lies within rim and iris, and outside of a hole."""
     squared = at.x * at.x + at.y * at.y
     is_open = squared <= rim * rim
     if crossing.hole_mm > 0:
@@ -82,14 +88,17 @@ def lets_through(crossing: Crossing, rim: Any, at: Any) -> Any:
 
 
 def intersect(crossing: Crossing, o: Any, p: Any) -> tuple[Any, Any, Any]:
-    """Returns point, unit normal (z positive near the vertex), and whether the ray hits the surface."""
+    """Intersects rays with a surface. o, p: point in mm from its vertex, and optical direction.
+
+    Returns point, unit normal (z positive near the vertex), and true if the ray hits the surface.
+    """
     if crossing.asphere:
         return intersect_asphere(crossing, crossing.asphere, o, p)
     if crossing.curvature_per_mm == 0:
         at = dr.fma(p, -o.z / p.z, o)
         return at, mi.Normal3f(0, 0, 1), p.z * crossing.sign_in > 0
-    t, normal, met = intersect_conic(crossing, o, p)
-    return dr.fma(p, t, o), normal, met
+    t, normal, hits = intersect_conic(crossing, o, p)
+    return dr.fma(p, t, o), normal, hits
 
 
 def intersect_conic(crossing: Crossing, o: Any, p: Any) -> tuple[Any, Any, Any]:
@@ -112,8 +121,8 @@ def intersect_conic(crossing: Crossing, o: Any, p: Any) -> tuple[Any, Any, Any]:
     at = dr.fma(p, t, o)
     gradient = mi.Vector3f(-c * at.x, -c * at.y, 1 - c * (1 + k) * at.z)
     normal = gradient if k == 0 else dr.normalize(gradient)
-    met = (discriminant > 0) & (normal.z > 0) & dr.isfinite(t)
-    return (t if k == 0 else t + approach), normal, met
+    hits = (discriminant > 0) & (normal.z > 0) & dr.isfinite(t)
+    return (t if k == 0 else t + approach), normal, hits
 
 
 def intersect_asphere(crossing: Crossing, shape: Asphere, o: Any, p: Any) -> tuple[Any, Any, Any]:
@@ -121,9 +130,9 @@ def intersect_asphere(crossing: Crossing, shape: Asphere, o: Any, p: Any) -> tup
     bounds."""
     per_z = dr.rcp(dr.select(p.z == 0, 1.0, p.z))
     below, above = (shape.lowest_mm - o.z) * per_z, (shape.highest_mm - o.z) * per_z
-    start, _, conic_met = intersect_conic(crossing, o, p) if crossing.curvature_per_mm else (-o.z * per_z, None, True)
+    start, _, conic_hits = intersect_conic(crossing, o, p) if crossing.curvature_per_mm else (-o.z * per_z, None, True)
     inside = (start - below) * (above - start) >= 0
-    t = dr.select(conic_met & inside, start, 0.5 * (below + above))
+    t = dr.select(conic_hits & inside, start, 0.5 * (below + above))
     # Rounding errors of a height are a few millionths of the lengths involved.
     tolerance = 2e-6 * (shape.highest_mm - shape.lowest_mm + dr.abs(o.z))
 
@@ -148,8 +157,8 @@ def intersect_asphere(crossing: Crossing, shape: Asphere, o: Any, p: Any) -> tup
     at = dr.fma(p, t, o)
     _, derivative = sag_of(crossing, shape, at)
     normal = dr.normalize(mi.Vector3f(-2 * derivative * at.x, -2 * derivative * at.y, 1))
-    met = (residual <= tolerance) & (dr.dot(p, normal) * crossing.sign_in > 0)
-    return at, normal, met
+    hits = (residual <= tolerance) & (dr.dot(p, normal) * crossing.sign_in > 0)
+    return at, normal, hits
 
 
 def sag_of(crossing: Crossing, shape: Asphere, at: Any) -> tuple[Any, Any]:

@@ -11,7 +11,7 @@ from .._core import Glass, InputError, Lens, LensFileError, RealcamError, glass_
 from ..derivatives.variable import Variable, check_surface_exists
 from .optimiser import Targets, optimised
 
-_G, _F, _D, _C = 435.8343, 486.1327, 587.5618, 656.2725  # nm
+_G, _F, _D, _C = 435.8343, 486.1327, 587.5618, 656.2725  # Fraunhofer lines, nm
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,7 @@ class GlassMatch:
 
 
 def _numbers(glass: Glass) -> tuple[float, float, float]:
+    """n_d, Abbe number and partial dispersion of a glass; inf and 0 if it has no dispersion."""
     g, f, d, c = (glass.index(nm) for nm in (_G, _F, _D, _C))
     if f <= c:
         return d, math.inf, 0.0
@@ -37,6 +38,7 @@ def _numbers(glass: Glass) -> tuple[float, float, float]:
 
 @lru_cache(maxsize=1)
 def _catalogue() -> tuple[tuple[str, tuple[float, float, float]], ...]:
+    """Names and _numbers() of the catalogue's glasses with dispersion."""
     rows = []
     for name in glass_names():
         try:
@@ -56,7 +58,7 @@ def nearest_glasses(glass: Glass | str, count: int = 5, *, makers: Sequence[str]
     """
     n, v, p = _numbers(Glass.named(glass) if isinstance(glass, str) else glass)
     if not math.isfinite(v):
-        raise InputError("a glass of one index has no dispersion to match; specify an index and an Abbe number")
+        raise InputError("a glass with a constant index has no dispersion; specify an index and an Abbe number")
     matches = [
         GlassMatch(name, *numbers, math.hypot((numbers[0] - n) / 0.01, numbers[1] - v, (numbers[2] - p) / 0.005))
         for name, numbers in _catalogue()
@@ -67,7 +69,11 @@ def nearest_glasses(glass: Glass | str, count: int = 5, *, makers: Sequence[str]
 
 @dataclass(frozen=True)
 class GlassSearch:
-    """Result of a glass search. glasses: the new glasses, by surface index. evaluations: number of evaluated lenses."""
+    """Result of a glass search.
+
+    lens: the best lens. glasses: the new glasses, by surface index. rms_spot_before_mm, rms_spot_mm: RMS spot radius of
+    the initial and the best lens. evaluations: number of evaluated lenses. message: reason for the end.
+    """
 
     lens: Lens
     glasses: Mapping[int, str]
@@ -99,7 +105,7 @@ def with_better_glasses(
     as for optimised. Raises InputError for surfaces without a dispersive glass behind them.
     """
     chosen = _glass_surfaces(lens, surfaces)
-    state = _State(0, progress)
+    state = _Progress(progress)
     best = optimised(
         lens, variables, targets, most_steps=most_steps, samples=samples, progress=state,
         answers_interrupt=answers_interrupt,
@@ -117,7 +123,7 @@ def with_better_glasses(
                             glasses,
                             before,
                             best.rms_spot_mm,
-                            state.looks,
+                            state.evaluations,
                             "stopped by the progress function",
                         )
                     try:
@@ -138,7 +144,7 @@ def with_better_glasses(
         if not answers_interrupt:
             raise
         message = "interrupted"
-    return GlassSearch(best.lens, glasses, before, best.rms_spot_mm, state.looks, message)
+    return GlassSearch(best.lens, glasses, before, best.rms_spot_mm, state.evaluations, message)
 
 
 def _other_glasses(glass: Glass, count: int, makers: Sequence[str] | None) -> list[GlassMatch]:
@@ -147,20 +153,22 @@ def _other_glasses(glass: Glass, count: int, makers: Sequence[str] | None) -> li
     return [match for match in pool if match.distance > 1e-3][:count]
 
 
-class _State:
+class _Progress:
     """Counts the evaluations of all optimisations, and remembers that the caller has stopped the search."""
 
-    def __init__(self, looks: int, progress: Callable[[int, float], bool | None] | None) -> None:
-        self.looks, self.progress, self.is_ended = looks, progress, False
+    def __init__(self, progress: Callable[[int, float], bool | None] | None) -> None:
+        self.evaluations, self.progress, self.is_ended = 0, progress, False
 
     def __call__(self, _: int, rms_mm: float) -> bool:
-        self.looks += 1
-        if self.progress is not None and self.progress(self.looks, rms_mm) is False:
+        self.evaluations += 1
+        if self.progress is not None and self.progress(self.evaluations, rms_mm) is False:
             self.is_ended = True
         return not self.is_ended
 
 
 def _glass_surfaces(lens: Lens, surfaces: Sequence[int] | None) -> list[int]:
+    """Indices of the surfaces whose glass may change; None: all with dispersion. Raises InputError."""
+
     def has_glass(i: int) -> bool:
         if lens.surfaces[i].type != "refracting":
             return False

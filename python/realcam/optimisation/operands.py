@@ -10,10 +10,11 @@ import numpy as np
 
 from .._core import InputError, Lens, Surface
 from ..derivatives.dual_array import Doubles
-from ..derivatives.gradient import QUANTITIES as OF_RAYS
+from ..derivatives.gradient import QUANTITIES as GRADIENT_QUANTITIES
 from ..derivatives.variable import Variable, check_surface_exists
 
-OF_GLASS = ("centre_thickness_mm", "edge_thickness_mm")
+#: Thickness operands, in addition to the quantities of Lens.gradient.
+THICKNESSES = ("centre_thickness_mm", "edge_thickness_mm")
 BOUNDS = ("equal", "least", "most")
 
 
@@ -39,32 +40,36 @@ class Operand:
 
     def checked(self, lens: Lens) -> Operand:
         """Returns the operand. Raises InputError if it is invalid for the lens."""
-        if self.quantity not in (*OF_RAYS, *OF_GLASS):
-            raise InputError(f'unknown operand "{self.quantity}"; expected one of {", ".join((*OF_RAYS, *OF_GLASS))}')
+        if self.quantity not in (*GRADIENT_QUANTITIES, *THICKNESSES):
+            raise InputError(
+                f'unknown operand "{self.quantity}"; expected one of {", ".join((*GRADIENT_QUANTITIES, *THICKNESSES))}'
+            )
         if self.bound not in BOUNDS:
             raise InputError(f'unknown bound "{self.bound}"; expected equal, least or most')
         if not (math.isfinite(self.target) and math.isfinite(self.weight) and self.weight > 0):
-            raise InputError(f"the operand {self.quantity} wants a finite target and a positive weight")
-        if self.quantity in OF_GLASS:
+            raise InputError(f"the operand {self.quantity} needs a finite target and a positive weight")
+        if self.quantity in THICKNESSES:
             check_surface_exists(lens, self.surface)
             if self.surface == len(lens.surfaces) - 1:
-                raise InputError(f"{self.quantity}: surface {self.surface + 1} is the last; the film follows it")
+                raise InputError(f"{self.quantity}: surface {self.surface + 1} is the last and has no thickness")
         return self
 
     def residual(self, value: float) -> float:
+        """Residual of the least-squares problem, mm, for a value of the quantity; 0 if a bound is met."""
         error = value - self.target
         if (self.bound == "least" and error >= 0) or (self.bound == "most" and error <= 0):
             return 0.0
         return self.weight * error
 
     def value_of(self, lens: Lens, samples: int) -> float:
-        if self.quantity in OF_GLASS:
+        """Value of the quantity. samples: as for Lens.gradient. Raises InputError."""
+        if self.quantity in THICKNESSES:
             return self._thickness(lens.surfaces[self.surface], lens.surfaces[self.surface + 1])
         return self.gradient_of(lens, [Variable.film_distance()], samples)[0]
 
     def gradient_of(self, lens: Lens, variables: Sequence[Variable], samples: int) -> tuple[float, Doubles]:
         """The value, and its derivatives (V,) at constant distance from the last vertex to the film."""
-        if self.quantity in OF_GLASS:
+        if self.quantity in THICKNESSES:
             return self._thickness_gradient(lens, variables)
         found = lens.gradient(
             self.quantity,
@@ -77,6 +82,7 @@ class Operand:
         return found.value, found.by
 
     def _thickness(self, front: Surface, back: Surface) -> float:
+        """Thickness between two surfaces at the centre or at the edge, mm."""
         if self.quantity == "centre_thickness_mm":
             return front.thickness_mm
         rim = max(front.clear_semi_diameter_mm, back.clear_semi_diameter_mm)

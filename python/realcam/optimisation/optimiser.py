@@ -17,7 +17,7 @@ from .operands import Operand
 
 Progress = Callable[[int, float], bool | None]
 
-REACH = 0.005  # half width of finite differences, in steps of the variables
+DIFFERENCE_STEP = 0.005  # half width of finite differences, in units of Variable.step
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,10 @@ class Targets:
 
 @dataclass(frozen=True)
 class Optimisation:
-    """Result of an optimisation. rms_spot_mm: weighted over all fields and wavelengths; message: why it ended.
+    """Result of an optimisation.
 
+    rms_spot_before_mm, rms_spot_mm: RMS spot radius of the initial and the best lens, weighted over all fields and
+    wavelengths. evaluations: number of evaluated lenses. message: reason for the end.
     merit: the minimised sum of squares of spots and operands, mm^2.
     """
 
@@ -88,7 +90,7 @@ def optimised(
     search = _Search(lens, list(variables), targets or Targets(), samples, progress)
     before = search.rms_of(search.of_start)
     try:
-        start = search.look_around(global_looks, seed) if global_looks else np.zeros(len(search.variables))
+        start = search.globally_best(global_looks, seed) if global_looks else np.zeros(len(search.variables))
         found = least_squares(
             search.residuals,
             start,
@@ -111,19 +113,25 @@ def optimised(
 
 
 class _Ended(Exception):  # noqa: N818
-    pass
+    """The progress function has ended the optimisation."""
 
 
 class _Search:
+    """Least-squares problem of an optimisation. Points x are (V,), changes of the variables in units of their steps.
+
+    best, best_rms, best_merit: the best lens so far. of_start: residuals of the initial lens. failed: residual of
+    lenses that cannot be evaluated. is_exact: True if derivatives are exact, not finite differences.
+    """
+
     def __init__(
         self, lens: Lens, variables: list[Variable], targets: Targets, samples: int, progress: Progress | None
     ) -> None:
         _check(lens, variables, targets)
         self.lens, self.variables, self.targets = lens, variables, targets
         self.samples, self.progress = samples, progress
-        self.field_weights = _shares(targets.field_weights, len(targets.fields_deg))
+        self.field_weights = _normalised(targets.field_weights, len(targets.fields_deg))
         self.wavelengths = list(targets.wavelengths_nm or [lens.wavelength_nm])
-        self.wavelength_weights = _shares(targets.wavelength_weights, len(self.wavelengths))
+        self.wavelength_weights = _normalised(targets.wavelength_weights, len(self.wavelengths))
         self.operands = [operand.checked(lens) for operand in targets.operands]
         if targets.focal_length_mm is not None:
             self.operands.append(
@@ -133,8 +141,8 @@ class _Search:
         self.steps = np.array([v.step(lens.surfaces[v.surface]) for v in variables])
         self.evaluations = 0
         self.best, self.best_rms, self.best_merit = lens, math.inf, math.inf
-        self.spot_count = 0
-        self.of_start = self._judge(lens)
+        self.spot_count = 0  # number of residuals that belong to spots; those of operands follow
+        self.of_start = self._evaluated(lens)
         self.failed = 1e3 * (1 + float(np.abs(self.of_start).max()))
         if not np.isfinite(self.of_start).all():
             raise InputError(f'no light passes lens "{lens.name}" from one of the fields')
@@ -158,6 +166,7 @@ class _Search:
         return (lower - self.start) / self.steps, (upper - self.start) / self.steps
 
     def lens_at(self, x: NDArray[np.float64]) -> Lens:
+        """The lens at a point, refocused if the targets require it. Raises InputError and LensFileError."""
         surfaces = {v.surface: self.lens.surfaces[v.surface] for v in self.variables}
         for variable, value in zip(self.variables, self.start + x * self.steps, strict=True):
             surfaces[variable.surface] = variable.set(surfaces[variable.surface], float(value))
@@ -165,10 +174,11 @@ class _Search:
         return lens.focused(lens.focus_distance_m) if self.targets.refocuses else lens
 
     def residuals(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Residuals at a point, and updates the best lens. Raises _Ended."""
         self.evaluations += 1
         try:
             lens = self.lens_at(x)
-            residuals = self._judge(lens)
+            residuals = self._evaluated(lens)
         except (InputError, LensFileError):
             residuals = np.full_like(self.of_start, np.nan)
         if not np.isfinite(residuals).all():
@@ -181,13 +191,14 @@ class _Search:
             raise _Ended
         return residuals
 
-    def look_around(self, looks: int, seed: int) -> NDArray[np.float64]:
-        """Returns the variables, in steps, of the best lens found by differential evolution within the bounds."""
+    def globally_best(self, evaluations: int, seed: int) -> NDArray[np.float64]:
+        """Returns the best point found by differential evolution within the bounds, with about this number of
+        evaluations. Raises InputError if a variable has no finite bounds."""
         from scipy.optimize import differential_evolution
 
         lower, upper = self.bounds()
         if not np.isfinite([lower, upper]).all():
-            raise InputError("a global search wants finite bounds of every variable")
+            raise InputError("a global search needs finite bounds for every variable")
 
         def merit(x: NDArray[np.float64]) -> float:
             residuals = self.residuals(x)
@@ -197,7 +208,7 @@ class _Search:
         found = differential_evolution(
             merit,
             list(zip(lower, upper, strict=True)),
-            maxiter=max(1, looks // members - 1),
+            maxiter=max(1, evaluations // members - 1),
             popsize=5,
             x0=np.zeros(len(self.variables)),
             polish=False,
@@ -208,9 +219,10 @@ class _Search:
         return np.asarray(np.clip(found.x, lower + inside, upper - inside))
 
     def jacobian(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(residuals, V): derivatives of the residuals by x."""
         return np.asarray(self._exact_jacobian(x) * self.steps) if self.is_exact else self._differences(x)
 
-    def _film_follows(self, x: NDArray[np.float64], lens: Lens) -> NDArray[np.float64]:
+    def _film_distance_by(self, x: NDArray[np.float64], lens: Lens) -> NDArray[np.float64]:
         """(V,): derivatives of the film distance by the variables, as the lens is refocused."""
         if not self.targets.refocuses:
             return np.zeros(len(x))
@@ -225,21 +237,23 @@ class _Search:
             except (InputError, LensFileError):
                 return math.nan
 
-        slopes = [[moved(side * unit) / side for side in (REACH, -REACH)] for unit in np.eye(len(x))]
+        sides = (DIFFERENCE_STEP, -DIFFERENCE_STEP)
+        slopes = [[moved(side * unit) / side for side in sides] for unit in np.eye(len(x))]
         means = [np.mean([s for s in pair if math.isfinite(s)] or 0.0) for pair in slopes]
         return np.asarray(np.array(means) / self.steps)
 
     def _exact_jacobian(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(residuals, V): derivatives of the residuals by the variables, per their units."""
         lens, targets, variables = self.lens_at(x), self.targets, [*self.variables, Variable.film_distance()]
-        follows = self._film_follows(x, lens)
+        film_by = self._film_distance_by(x, lens)
 
-        def following(by: NDArray[np.float64]) -> NDArray[np.float64]:
+        def total(by: NDArray[np.float64]) -> NDArray[np.float64]:
             """Total derivatives by the variables, including the motion of the film."""
-            return np.asarray(by[..., :-1] + by[..., -1:] * follows)
+            return np.asarray(by[..., :-1] + by[..., -1:] * film_by)
 
         rows = []
         for field, weight in zip(targets.fields_deg, self.field_weights, strict=True):
-            at, by, share, passes = [], [], [], []
+            by, weights, passes = [], [], []
             for wavelength, part in zip(self.wavelengths, self.wavelength_weights, strict=True):
                 light = field_light(
                     lens,
@@ -249,22 +263,20 @@ class _Search:
                     object_distance_m=targets.object_distance_m,
                     samples=self.samples,
                 )
-                points = light.on_film()[:-1]
-                at.append(points.value)
-                by.append(following(points.by))
-                share.append(part * light.weights)
+                by.append(total(light.on_film()[:-1].by))
+                weights.append(part * light.weights)
                 passes.append(light.passes[:-1])
             passing = np.concatenate(passes)
-            shares = np.concatenate(share) / np.concatenate(share).sum()
+            fractions = np.concatenate(weights) / np.concatenate(weights).sum()
             changes = np.where(passing[:, None, None], np.concatenate(by), 0.0)
-            middle = np.tensordot(shares, changes, 1)
-            off = np.where(passing[:, None, None], changes - middle, 0.0) * np.sqrt(shares)[:, None, None]
+            centroid = np.tensordot(fractions, changes, 1)
+            errors = np.where(passing[:, None, None], changes - centroid, 0.0) * np.sqrt(fractions)[:, None, None]
             scale = math.sqrt(weight / max(passing.mean(), 1e-9))
-            rows.append(scale * off.reshape(-1, len(self.variables)))
+            rows.append(scale * errors.reshape(-1, len(self.variables)))
         for operand in self.operands:
             value, change = operand.gradient_of(lens, variables, self.samples)
             slope = operand.weight if operand.residual(value) != 0 or operand.bound == "equal" else 0.0
-            rows.append(slope * following(change)[None])
+            rows.append(slope * total(change)[None])
         return np.concatenate(rows)
 
     def _differences(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -272,8 +284,9 @@ class _Search:
         the error of one-sided differences would hide the spots. One-sided if the lens on one side cannot be built."""
         columns = []
         for unit in np.eye(len(x)):
-            looks = [(side, self.residuals(x + side * unit)) for side in (REACH, -REACH)]
-            possible = [(side, residuals) for side, residuals in looks if residuals[0] != self.failed]
+            sides = (DIFFERENCE_STEP, -DIFFERENCE_STEP)
+            evaluated = [(side, self.residuals(x + side * unit)) for side in sides]
+            possible = [(side, residuals) for side, residuals in evaluated if residuals[0] != self.failed]
             if len(possible) == 1:
                 possible.append((0.0, self.residuals(x)))
             if not possible:
@@ -285,9 +298,10 @@ class _Search:
         return derivatives
 
     def rms_of(self, residuals: NDArray[np.float64]) -> float:
+        """RMS spot radius, mm, from residuals."""
         return float(np.sqrt(np.sum(residuals[: self.spot_count] ** 2)))
 
-    def _judge(self, lens: Lens) -> NDArray[np.float64]:
+    def _evaluated(self, lens: Lens) -> NDArray[np.float64]:
         """Residuals: ray errors in mm whose squares sum to the mean square spot radius, then those of the operands; nan
         if no light of a field passes."""
         targets = self.targets
@@ -300,6 +314,7 @@ class _Search:
         return np.asarray(np.append(spots, others))
 
     def _ray_errors(self, lens: Lens, field_deg: float) -> NDArray[np.float64]:
+        """Weighted distances of the rays from their centroid in x and y, mm; nan if no light passes."""
         points, weights = [], []
         for wavelength, part in zip(self.wavelengths, self.wavelength_weights, strict=True):
             try:
@@ -313,19 +328,20 @@ class _Search:
                 return np.full(1, np.nan)
             points.append(spot.points_mm)
             weights.append(part * spot.weights)
-        at, share = np.concatenate(points), np.concatenate(weights)
-        passes = np.isfinite(at[:, 0])
-        share = np.where(passes, share, 0.0)
-        share = share / share.sum()
-        middle = share @ np.where(passes[:, None], at, 0.0)
+        all_points, fractions = np.concatenate(points), np.concatenate(weights)
+        passes = np.isfinite(all_points[:, 0])
+        fractions = np.where(passes, fractions, 0.0)
+        fractions = fractions / fractions.sum()
+        centroid = fractions @ np.where(passes[:, None], all_points, 0.0)
         # Weighted by the inverse fraction of passing rays, so that vignetting does not count as sharpness.
-        errors = np.where(passes[:, None], at - middle, 0.0) * np.sqrt(share)[:, None]
+        errors = np.where(passes[:, None], all_points - centroid, 0.0) * np.sqrt(fractions)[:, None]
         return np.asarray(errors.ravel() / math.sqrt(max(passes.mean(), 1e-9)))
 
 
-def _shares(weights: Sequence[float] | None, count: int) -> NDArray[np.float64]:
-    shares = np.array([1.0] * count if weights is None else weights, float)
-    return np.asarray(shares / shares.sum())
+def _normalised(weights: Sequence[float] | None, count: int) -> NDArray[np.float64]:
+    """Weights with the sum 1; None: `count` equal ones."""
+    array = np.array([1.0] * count if weights is None else weights, float)
+    return np.asarray(array / array.sum())
 
 
 def _focuses_by_group(lens: Lens) -> bool:
@@ -338,21 +354,19 @@ def _focuses_by_group(lens: Lens) -> bool:
 
 
 def _check(lens: Lens, variables: list[Variable], targets: Targets) -> None:
-    known = ("curvature", "thickness", "conic", "aspheric", "index")
+    """Raises InputError for variables and targets that do not apply to the lens."""
+    supported = ("curvature", "thickness", "conic", "aspheric", "index")
     for variable in checked(lens, variables):
-        if variable.quantity not in known:
+        if variable.quantity not in supported:
             raise InputError(
-                f'an optimisation changes {", ".join(known)}; "{variable.quantity}" would be no number of the centred '
-                "lens that it looks at"
+                f'an optimisation cannot change "{variable.quantity}"; expected one of {", ".join(supported)}'
             )
         check_surface_exists(lens, variable.surface)
         if variable.quantity == "thickness" and variable.surface == len(lens.surfaces) - 1:
-            raise InputError("the last surface has no thickness; the film follows it")
+            raise InputError("the last surface has no thickness; the film distance follows it")
         surface = lens.surfaces[variable.surface]
         if variable.quantity != "thickness" and surface.type in ("stop", "aperture"):
-            raise InputError(
-                f"surface {variable.surface + 1} is a {surface.type}, a plane, and has no {variable.quantity}"
-            )
+            raise InputError(f"surface {variable.surface + 1} is a plane {surface.type} and has no {variable.quantity}")
         value = variable.of(surface)
         if not variable.lower < value < variable.upper:
             raise InputError(
@@ -361,11 +375,11 @@ def _check(lens: Lens, variables: list[Variable], targets: Targets) -> None:
             )
     weights = targets.field_weights
     if not targets.fields_deg or (weights is not None and len(weights) != len(targets.fields_deg)):
-        raise InputError("fields_deg must name at least one field, and field_weights as many")
+        raise InputError("fields_deg must have at least one field, and field_weights as many numbers")
     if weights is not None and not all(w > 0 and math.isfinite(w) for w in weights):
         raise InputError("field_weights must be positive numbers")
-    of_colours, colours = targets.wavelength_weights, targets.wavelengths_nm or [lens.wavelength_nm]
-    if of_colours is not None and (len(of_colours) != len(colours) or not all(w > 0 for w in of_colours)):
+    weights, colours = targets.wavelength_weights, targets.wavelengths_nm or [lens.wavelength_nm]
+    if weights is not None and (len(weights) != len(colours) or not all(w > 0 for w in weights)):
         raise InputError(f"wavelength_weights must be {len(colours)} positive numbers, one for each wavelength")
     # Raises for variables without an effect, such as the conic of a plane.
     lens._ray_derivatives(np.zeros((0, 3)), np.zeros((0, 3)), [v.as_tuple() for v in variables])

@@ -11,9 +11,9 @@ from ..derivatives.variable import FORM_TERMS
 def check_expressible(lens: Lens) -> None:
     """Raises InputError, with the surface or other reason, if the lens cannot be written as OSL."""
     for number, surface in enumerate(lens.surfaces, 1):
-        why = _why_not(surface)
-        if why:
-            _refuse(lens, f"surface {number} {why}")
+        reason = _why_not(surface)
+        if reason:
+            _refuse(lens, f"surface {number} {reason}")
     if math.isfinite(lens.film_radius_of_curvature_mm):
         _refuse(lens, "its film is curved")
     if not lens.is_rotational:
@@ -24,11 +24,15 @@ def check_expressible(lens: Lens) -> None:
         _refuse(lens, "it is afocal or telecentric before its film, and has no f-number")
 
 
-def _refuse(lens: Lens, why: str) -> None:
-    raise InputError(f'lens "{lens.name}" cannot be written as OSL, which is for centred lenses of revolution: {why}')
+def _refuse(lens: Lens, reason: str) -> None:
+    """Raises InputError."""
+    raise InputError(
+        f'lens "{lens.name}" cannot be written as OSL, which requires a rotationally symmetric lens: {reason}'
+    )
 
 
 def _why_not(surface: Surface) -> str:
+    """Reason why a surface cannot be written, as a predicate; empty if it can."""
     if any(surface.decentre_mm) or any(surface.tilt_deg):
         return "is tilted or decentred"
     if surface.form != "conic":
@@ -36,9 +40,9 @@ def _why_not(surface: Surface) -> str:
     if surface.radial_terms:
         return "has radial_terms"
     if surface.xy_terms or any(getattr(surface, terms) for terms in FORM_TERMS):
-        return "has terms of a free form"
+        return "has freeform terms"
     if surface.aperture:
-        return "has an aperture that is no circle about the axis"
+        return "has an aperture that is not a circle about the axis"
     if surface.obscurations:
         return "has obscurations"
     return ""

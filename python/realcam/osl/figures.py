@@ -9,10 +9,12 @@ import numpy as np
 
 
 def float_text(value: float) -> str:
+    """Number with nine digits, which preserve a float32."""
     return f"{value:.9g}"
 
 
 def array_text(values: Sequence[float] | np.ndarray) -> str:
+    """Initialiser of an array, with six digits."""
     return "{" + ", ".join(f"{value:.6g}" for value in values) + "}"
 
 

@@ -13,9 +13,9 @@ from .._core import InputError, Lens, RealcamError
 # Error of a distance relative to the film's diagonal. At f/1 it displaces light on the film by as much: a fiftieth of a
 # pixel in a large picture. The focus found with real rays is uneven by half of it, because rims cut off ray after ray.
 _TOLERANCE = 1e-5
-_MOST_TERMS = 9
-_SAMPLES = 24
-_SMALLEST_MAGNIFICATION = 1 / 8
+_MAX_TERMS = 9
+_SAMPLES = 24  # focus settings to which the polynomials are fitted
+_DEFAULT_MAGNIFICATION = 1 / 8  # at the nearest focus, unless the lens file has one
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,7 @@ class FocusRange:
 
     lens: Lens
     nearest_m: float
+    """Nearest focus distance, from the film."""
     start_m: float
     """Distance from the front focal point to the film at infinity focus."""
     gaps_mm: dict[int, Polynomial]
@@ -36,9 +37,11 @@ class FocusRange:
     film."""
 
     def distance_m(self, focus: float) -> float:
+        """Focus distance of a focus parameter."""
         return self.start_m + (self.nearest_m - self.start_m) / focus if focus > 0 else math.inf
 
     def lens_at(self, focus: float) -> Lens:
+        """The lens at a focus parameter."""
         return self.lens.focused(self.distance_m(focus))
 
 
@@ -65,21 +68,21 @@ def gaps_of(lens: Lens) -> list[float]:
 
 def _nearest_m(lens: Lens, start_m: float) -> float:
     """Nearest focus for a lens whose file has none: magnification 1/8, or the closest that the lens can reach."""
-    reach_m = 1e-3 * abs(lens.first_order().effective_focal_length_mm) / _SMALLEST_MAGNIFICATION
+    object_m = 1e-3 * abs(lens.first_order().effective_focal_length_mm) / _DEFAULT_MAGNIFICATION
     for _ in range(12):
-        distance_m = float(f"{start_m + reach_m:.2g}")
+        distance_m = float(f"{start_m + object_m:.2g}")
         try:
             lens.focused(distance_m)
         except RealcamError:
-            reach_m *= 1.5
+            object_m *= 1.5
         else:
             return distance_m
-    raise InputError(f'lens "{lens.name}" cannot be focused on anything near')
+    raise InputError(f'lens "{lens.name}" cannot be focused on a near object')
 
 
 def _fitted(positions: np.ndarray, values: np.ndarray, tolerance: float) -> Polynomial:
     """Polynomial of the lowest degree that is within the tolerance."""
-    for degree in range(1, _MOST_TERMS):
+    for degree in range(1, _MAX_TERMS):
         fit: Polynomial = Polynomial.fit(positions, values, degree, domain=[0, 1], window=[0, 1])
         if np.abs(fit(positions) - values).max() < tolerance:
             break

@@ -2,24 +2,26 @@
 
 Rays are traced from the film to the scene, in mm. Directions have the length of the refractive index of their medium
 (optical directions), so that Snell's law changes them only along the normal; all formulas scale with that length.
-`forwards` is the sign of the ray's z direction: -1 towards the scene, 1 between two mirrors.
+`forwards` is the sign of the ray's z direction: -1 towards the scene, 1 between two mirrors. `at`: position, mm, in the
+frame of the vertex of the last surface; `way`: optical direction. Functions return 1 if the ray passes, otherwise 0.
 """
 
 SPHERE = """\
-// Takes a ray across a sphere or a plane, `gap` before the vertex it is given from. Returns whether it passes.
-// `before` and `behind`: squares of the indices, as the light goes.
+// Traces a ray through a sphere or a plane. gap: distance from its vertex to that of the last surface. rim: clear
+// semi-diameter. before, behind: squares of the indices in the order of the ray.
 int cross_sphere(float gap, float curvature, float rim, float before, float behind, float forwards,
                  output point at, output vector way)
 {
     at[2] += gap;
     float f = curvature * dot(at, at) - 2 * at[2];
     float g = way[2] - curvature * dot(at, way);
-    // The squares of what is along the normal differ as those of the indices: both roots are there before the path.
+    // Squared components of the direction along the normal, before and behind the surface; they differ by the squared
+    // indices.
     float inside = g * g - curvature * before * f;
     float refracted = inside + (behind - before);
     if (inside <= 0 || refracted < 0) return 0;
     float along = forwards * (curvature == 0 ? abs(g) : sqrt(inside));
-    // Of the two forms of a quadratic equation's solution, the one in which nothing cancels.
+    // The form of the quadratic equation's solution without cancellation.
     float path = g * forwards >= 0 ? f / (g + along) : (g - along) / (curvature * before);
     at += path * way;
     float facing = 1 - curvature * at[2];
@@ -31,7 +33,7 @@ int cross_sphere(float gap, float curvature, float rim, float before, float behi
 """
 
 HOLE = """\
-// Whether a ray, on a surface, is outside of its hole.
+// Returns 1 if a point of a surface is outside of its central hole, of this radius.
 int misses_hole(float hole, point at)
 {
     return at[0] * at[0] + at[1] * at[1] >= hole * hole;
@@ -39,7 +41,7 @@ int misses_hole(float hole, point at)
 """
 
 MIRROR = """\
-// The same of a mirror.
+// Traces a ray to a mirror; parameters as for cross_sphere. medium: squared index in front of it.
 int cross_mirror(float gap, float curvature, float rim, float medium, float forwards,
                  output point at, output vector way)
 {
@@ -51,13 +53,13 @@ int cross_mirror(float gap, float curvature, float rim, float medium, float forw
 """
 
 PLANE = """\
-// Where a ray meets the plane z = 0.
+// Intersection of a ray with the plane z = 0.
 point met(point at, vector way)
 {
     return at - at[2] / way[2] * way;
 }
 
-// Whether a ray passes a plane that only blocks. The ray begins where it did before.
+// Returns 1 if a ray passes a plane aperture. The ray's position is only converted to the frame of the plane.
 int pass_plane(float gap, float rim, output point at, vector way)
 {
     at[2] += gap;
@@ -67,7 +69,8 @@ int pass_plane(float gap, float rim, output point at, vector way)
 """
 
 STOP = """\
-// The area, over the apothem's square, of an opening of n arcs that touch the unit circle; the circle `rim` cuts it.
+// Area of a diaphragm opening over the square of its apothem: n arcs that touch the unit circle, within a circle of
+radius // `rim`.
 float opening_area(float blades, float rounding, float rim)
 {
     float half = M_PI / blades;
@@ -76,11 +79,11 @@ float opening_area(float blades, float rounding, float rim)
     float corner = (2 - rounding) / (linear + sqrt(linear * linear + rounding * (2 - rounding)));
     float edge = half;
     if (corner > rim) {
-        // At this azimuth the arc meets the rim; the way there is the same equation, solved for the cosine.
+        // Azimuth at which the arc meets the rim.
         edge = rounding >= 1 ? half : acos(min(1, (2 - rounding - rounding * rim * rim) / (2 * (1 - rounding) * rim)));
         corner = rim;
     }
-    // Sector of the arc's own circle, less the triangle between both middles and the corner.
+    // Half of the area under an arc: the sector of its circle minus the triangle of both centres and the corner.
     float piece = 0.5 * corner * cos(edge) * corner * sin(edge);
     if (rounding > 0) {
         float radius = 1 / rounding;
@@ -90,7 +93,8 @@ float opening_area(float blades, float rounding, float rim)
     return 2 * blades * (piece + 0.5 * rim * rim * (half - edge));
 }
 
-// The apothem of a diaphragm that leaves as much open as a circle of this radius, inside of the rim.
+// Apothem of a diaphragm whose opening has the area of a circle of this radius, within a circle of radius `rim`; by
+// bisection.
 float apothem_of(float blades, float rounding, float radius, float rim)
 {
     if (radius >= rim) return rim;
@@ -104,8 +108,8 @@ float apothem_of(float blades, float rounding, float radius, float rim)
     return high;
 }
 
-// Whether a ray passes the diaphragm. Its blades are arcs at the apothem's distance, or straight; none is beyond the
-// corners.
+// Returns 1 if a ray passes the diaphragm. Its blades are arcs or straight lines at the apothem's distance from the
+axis; // corner: radius of the circle through the opening's corners.
 int pass_stop(float gap, float corner, float blades, float rounding, float rotation, float apothem,
               output point at, vector way)
 {
@@ -121,8 +125,8 @@ int pass_stop(float gap, float corner, float blades, float rounding, float rotat
 """
 
 ASPHERE = """\
-// Of surface {number} the height over its vertex in mm and its derivatives. t is -1 on the axis and 1 at the rim, and
-// grows as the square of the distance from the axis.
+// Sag of surface {number} in mm, and its first and second derivative (slope, bow) by t. t is linear in the squared
+distance // from the axis: -1 on the axis, 1 at the rim.
 void shape_{number}(float t, output float height, output float slope, output float bow)
 {{
 {powers}    height = {height};
@@ -130,11 +134,11 @@ void shape_{number}(float t, output float height, output float slope, output flo
     bow = {bow};
 }}
 
-// The same as cross_sphere, by Newton's method from the plane z = {start} on.
+// As cross_sphere for an asphere, by Newton's method from the plane z = {start}.
 int cross_surface_{number}(float gap, float before, float behind, float forwards, output point at, output vector way)
 {{
     at[2] += gap;
-    // Along the ray t is a quadratic polynomial of the path.
+    // Along the ray, t is a quadratic polynomial of the path.
     float start = {scale} * (at[0] * at[0] + at[1] * at[1]) - 1;
     float b = {scale} * (at[0] * way[0] + at[1] * way[1]);
     float a = {scale} * (way[0] * way[0] + way[1] * way[1]);
@@ -147,7 +151,7 @@ int cross_surface_{number}(float gap, float before, float behind, float forwards
     float step = 0;
 {steps}    if (abs(step) > {farthest} || next > 1) return 0;
     at += path * way;
-    // At the end of the last step the slope is another one.
+    // Slope at the end of the last step, by the second derivative.
     slope += bow * (next - t);
     float lean = {lean} * slope;
     float along = way[2] - 2 * slope * (b + path * a);
@@ -160,14 +164,14 @@ int cross_surface_{number}(float gap, float before, float behind, float forwards
 """
 
 ROUGH_STEP = """\
-    // With a polynomial of few terms.
+    // A Newton step with a polynomial of few terms.
     slope = {slope};
     path -= (at[2] + path * way[2] - ({height})) / (way[2] - 2 * slope * (b + path * a));
     next = start + path * (2 * b + path * a);
 """
 
 STEP = """\
-    // With the surface, which goes on beyond the rim with the slope in t that it has there.
+    // A Newton step with the sag, which is continued linearly in t beyond the rim.
     t = next;
     shape_{number}(min(t, 1), height, slope, bow);
     step = (at[2] + path * way[2] - height - slope * max(t - 1, 0)) / (way[2] - 2 * slope * (b + path * a));
@@ -176,8 +180,10 @@ STEP = """\
 """
 
 PUPIL = """\
-// The ellipse of directions in which light passes, of a film point on the x axis, in direction cosines.
-// `share`: of the largest film radius. `open`: of the largest stop, to the blades' corners.
+// Interpolates the pupil table: the ellipse of direction cosines (l, m) in which light reaches a film point on the x
+axis, // with its centre `middle` in l, its half axes, and the central obstruction `hole` relative to the half axes.
+// share: film radius relative to the largest one of the table. open: radius of the stop's corners relative to the fully
+// open stop.
 void find_pupil(float share, float focus, float open, float colour, output float middle, output float half_l,
                 output float half_m, output float hole)
 {{
@@ -201,10 +207,10 @@ void find_pupil(float share, float focus, float open, float colour, output float
         half_m += weight * mix(ellipses[wide + 2], ellipses[narrow + 2], closing);
         bulge += weight * ellipses[wide + 3];{hole}{drift}
     }}
-    // Rims make the pupil larger between two stops than their mean, but not what is blocked in its middle.
+    // Vignetting makes the pupil larger between two stops than the interpolated one, but not its central obstruction.
     float growth = 1 + 4 * closing * (1 - closing) * bulge;
     hole /= growth;
-    // The last factor is for stops beyond the table.
+    // The last factor is for stops smaller than those of the table.
     float size = growth * min(1, open / {last});
     half_l *= size;
     half_m *= size;

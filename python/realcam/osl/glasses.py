@@ -11,7 +11,7 @@ from .._core import Lens
 
 POLE_NM = 200.0
 """Indices increase towards resonances in the ultraviolet; in 1 / (wavelength - pole) they are nearly polynomials."""
-_TERMS = 4
+_TERMS = 4  # powers of the colour variable
 
 
 def colour_variable(lens: Lens, wavelength_nm: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -22,9 +22,9 @@ def colour_variable(lens: Lens, wavelength_nm: NDArray[np.float64]) -> NDArray[n
 
 def colour_scale(lens: Lens) -> tuple[float, float]:
     """Returns (scale, offset), with colour variable = scale / (wavelength - pole) - offset."""
-    own = 1 / (lens.wavelength_nm - POLE_NM)
-    scale = 1 / (1 / (400 - POLE_NM) - own)
-    return scale, scale * own
+    design = 1 / (lens.wavelength_nm - POLE_NM)
+    scale = 1 / (1 / (400 - POLE_NM) - design)
+    return scale, scale * design
 
 
 def media_indices(lens: Lens, wavelength_nm: float) -> list[float]:
@@ -42,15 +42,15 @@ def squared_indices(lens: Lens, wavelengths_nm: Sequence[float]) -> list[list[fl
     The constant comes first and is exact. A medium without dispersion has only the constant.
     """
 
-    def at(wavelength_nm: float) -> NDArray[np.float64]:
+    def squares(wavelength_nm: float) -> NDArray[np.float64]:
         return np.array(media_indices(lens, wavelength_nm), dtype=np.float64) ** 2
 
-    own = at(lens.wavelength_nm)
+    design = squares(lens.wavelength_nm)
     variables = colour_variable(lens, np.array(wavelengths_nm))
-    values = np.array([at(wavelength_nm) for wavelength_nm in wavelengths_nm]) - own
+    values = np.array([squares(wavelength_nm) for wavelength_nm in wavelengths_nm]) - design
     powers = variables[:, None] ** np.arange(1, 1 + _TERMS)
-    rest = np.linalg.lstsq(powers, values, rcond=None)[0].T
+    coefficients = np.linalg.lstsq(powers, values, rcond=None)[0].T
     return [
         [float(constant), *map(float, terms)] if np.ptp(column) > 1e-7 else [float(constant)]
-        for constant, terms, column in zip(own, rest, values.T, strict=True)
+        for constant, terms, column in zip(design, coefficients, values.T, strict=True)
     ]

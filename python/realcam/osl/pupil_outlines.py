@@ -13,9 +13,9 @@ from .._core import Lens
 Doubles = NDArray[np.float64]
 Light = Sequence[tuple[float, Doubles]]
 """Wavelengths in nm, each with the shifts (R,) of its direction cosines l at R film points."""
-_COLUMNS, _ROWS = 33, 17
-_HALVINGS = 7
-_AZIMUTHS, _STEPS = 33, 16
+_COLUMNS, _ROWS = 33, 17  # of the grid of directions in which the pupil is searched
+_HALVINGS = 7  # bisection steps of each edge point
+_AZIMUTHS, _STEPS = 33, 16  # directions and radii at which the central obstruction is searched
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,7 @@ class Outlines:
 
     @property
     def lit(self) -> NDArray[np.bool_]:
+        """(R,): true if light reaches the film point."""
         return np.isfinite(self.boxes[:, 0])
 
 
@@ -43,11 +44,11 @@ def rear_boxes(lens: Lens, radii_mm: Doubles) -> Doubles:
     """(R, 3): boxes of the directions from film points on the x axis to the lens's last surface, with a margin."""
     last = lens.surfaces[-1]
     rim_mm = 1.1 * last.clear_semi_diameter_mm
-    away_mm = max(0.5 * lens.film_distance_mm, lens.film_distance_mm - last.sag_mm(last.clear_semi_diameter_mm))
+    distance_mm = max(0.5 * lens.film_distance_mm, lens.film_distance_mm - last.sag_mm(last.clear_semi_diameter_mm))
     angles = np.linspace(0, np.pi, 33)
     x = rim_mm * np.cos(angles) - radii_mm[:, None]
     y = rim_mm * np.sin(angles)
-    length = np.sqrt(x**2 + y**2 + away_mm**2)
+    length = np.sqrt(x**2 + y**2 + distance_mm**2)
     directions_l, directions_m = x / length, y / length
     return np.stack([directions_l.min(axis=1), directions_l.max(axis=1), directions_m.max(axis=1)], axis=1)
 
@@ -59,12 +60,12 @@ def passes(lens: Lens, radii_mm: Doubles, l: Doubles, m: Doubles, light: Light) 
     origins[..., 0] = radii_mm[:, None]
     origins[..., 2] = lens.film_position_mm
     for wavelength_nm, shift in light:
-        moved = l + shift[:, None]
-        rest = 1 - moved**2 - m**2
-        left = ~passed & (rest > 0)
-        directions = np.stack([moved[left], m[left], -np.sqrt(rest[left])], axis=-1)
-        traced = lens.trace(origins[left], directions, wavelength_nm=wavelength_nm, dtype="float32")
-        passed[left] = traced.status == 0
+        shifted = l + shift[:, None]
+        squared_n = 1 - shifted**2 - m**2  # squared direction cosine along the axis
+        remaining = ~passed & (squared_n > 0)
+        directions = np.stack([shifted[remaining], m[remaining], -np.sqrt(squared_n[remaining])], axis=-1)
+        traced = lens.trace(origins[remaining], directions, wavelength_nm=wavelength_nm, dtype="float32")
+        passed[remaining] = traced.status == 0
     return passed
 
 
@@ -73,12 +74,12 @@ def outlines(lens: Lens, radii_mm: Doubles, boxes: Doubles, light: Light, rounds
     for _ in range(rounds):
         boxes = _narrowed(lens, radii_mm, boxes, light)
 
-    def at(l: Doubles, m: Doubles) -> NDArray[np.bool_]:  # noqa: E741
+    def passing(l: Doubles, m: Doubles) -> NDArray[np.bool_]:  # noqa: E741
         return passes(lens, radii_mm, l, m, light)
 
     grid_l, grid_m = _grid(boxes)
     shape = (len(radii_mm), _ROWS, _COLUMNS)
-    passed = at(grid_l.reshape(len(radii_mm), -1), grid_m.reshape(len(radii_mm), -1)).reshape(shape)
+    passed = passing(grid_l.reshape(len(radii_mm), -1), grid_m.reshape(len(radii_mm), -1)).reshape(shape)
     width = (boxes[:, 1] - boxes[:, 0])[:, None] / (_COLUMNS - 1)
     height = boxes[:, 2][:, None] / (_ROWS - 1)
     row_lit: NDArray[np.bool_] = np.any(passed, axis=2)
@@ -91,41 +92,40 @@ def outlines(lens: Lens, radii_mm: Doubles, boxes: Doubles, light: Light, rounds
     tops = top + height
     for _ in range(_HALVINGS):
         middle_low, middle_high, middle_top = 0.5 * (lows + first), 0.5 * (highs + last), 0.5 * (tops + top)
-        rows = at(np.hstack([middle_low, middle_high, column_l]), np.hstack([row_m, row_m, middle_top]))
+        rows = passing(np.hstack([middle_low, middle_high, column_l]), np.hstack([row_m, row_m, middle_top]))
         low_in, high_in, top_in = np.split(rows, [_ROWS, 2 * _ROWS], axis=1)
         first, lows = np.where(low_in, middle_low, first), np.where(low_in, lows, middle_low)
         last, highs = np.where(high_in, middle_high, last), np.where(high_in, highs, middle_high)
         top, tops = np.where(top_in, middle_top, top), np.where(top_in, tops, middle_top)
-    row_dark, column_dark = ~row_lit, ~column_lit
-    edge_l = np.hstack([np.where(row_dark, np.nan, lows), np.where(row_dark, np.nan, highs), column_l])
-    edge_m = np.hstack([row_m, row_m, np.where(column_dark, np.nan, tops)])
+    edge_l = np.hstack([np.where(row_lit, lows, np.nan), np.where(row_lit, highs, np.nan), column_l])
+    edge_m = np.hstack([row_m, row_m, np.where(column_lit, tops, np.nan)])
     missing = np.isnan(edge_l) | np.isnan(edge_m)
     edge_l[missing] = edge_m[missing] = np.nan
     blocked = any(surface.inner_semi_diameter_mm for surface in lens.surfaces)
-    inner_l, inner_m = _inner_edges(boxes, at) if blocked else np.full((2, len(radii_mm), _AZIMUTHS), np.nan)
+    inner_l, inner_m = _inner_edges(boxes, passing) if blocked else np.full((2, len(radii_mm), _AZIMUTHS), np.nan)
     return Outlines(edge_l, edge_m, inner_l, inner_m, boxes)
 
 
-def _inner_edges(boxes: Doubles, at: Callable[[Doubles, Doubles], NDArray[np.bool_]]) -> tuple[Doubles, Doubles]:
+def _inner_edges(boxes: Doubles, passing: Callable[[Doubles, Doubles], NDArray[np.bool_]]) -> tuple[Doubles, Doubles]:
     """Edges of the central obstruction: first directions in which light passes, outwards from the centre of each
     box."""
     angles = np.linspace(0, np.pi, _AZIMUTHS)
     middle, half, top = 0.5 * (boxes[:, 0] + boxes[:, 1]), 0.5 * (boxes[:, 1] - boxes[:, 0]), boxes[:, 2]
 
-    def directions(share: Doubles) -> tuple[Doubles, Doubles]:
+    def directions(fraction: Doubles) -> tuple[Doubles, Doubles]:
         """Directions at fractions (R, azimuths) of the distance from the centre to the ellipse inscribed in the box."""
         return (
-            middle[:, None] + half[:, None] * share * np.cos(angles),
-            top[:, None] * share * np.sin(angles),
+            middle[:, None] + half[:, None] * fraction * np.cos(angles),
+            top[:, None] * fraction * np.sin(angles),
         )
 
     shape = (len(boxes), _AZIMUTHS)
-    passed = np.stack([at(*directions(np.full(shape, step / _STEPS))) for step in range(_STEPS)], axis=-1)
+    passed = np.stack([passing(*directions(np.full(shape, step / _STEPS))) for step in range(_STEPS)], axis=-1)
     first = passed.argmax(axis=-1) / _STEPS
     before = np.maximum(first - 1 / _STEPS, 0)
     for _ in range(_HALVINGS):
         tried = 0.5 * (before + first)
-        lit = at(*directions(tried))
+        lit = passing(*directions(tried))
         first, before = np.where(lit, tried, first), np.where(lit, before, tried)
     l, m = directions(before)  # noqa: E741
     dark = ~passed.any(axis=-1)

@@ -17,10 +17,10 @@ from scipy.ndimage import maximum_filter, minimum_filter
 from .focus_range import FocusRange
 from .pupil_outlines import Doubles, Light, Outlines, outlines, rear_boxes
 
-ROWS, FOCI = 25, 3
+ROWS, FOCI = 25, 3  # film radii and focus settings of the table
 STOPS = (1.0, 2**-0.5, 0.5, 0.25, 0.0625)
 """Stop radii of the table, relative to the fully open stop."""
-_QUARTERS = (0.25, 0.5, 0.75)
+_QUARTERS = (0.25, 0.5, 0.75)  # positions between two stops at which the interpolated ellipses are tested
 _REACH = 1.2
 """Largest film radius of the table in half diagonals of the film, unless the image circle ends before."""
 _HOLE_MARGIN = 0.02
@@ -35,6 +35,8 @@ wavelengths."""
 
 @dataclass(frozen=True)
 class PupilTable:
+    """Pupil ellipses by focus, stop and film radius."""
+
     reach_mm: float
     """Film radius of the last row. Row i of n is at reach (1 - (1 - i / (n - 1))^2), which is denser towards the
     edge."""
@@ -60,16 +62,16 @@ def pupil_table(focusing: FocusRange, colours: Mapping[float, float]) -> PupilTa
         parts = (*_QUARTERS, 1.0) if step % 2 == 0 else (1.0,)
         positions = [0.0, *(cell + part for cell in cells for part in parts)]
         light = [(wavelength_nm, colour * drifts[step]) for wavelength_nm, colour in colours.items()]
-        looks = _looks(focusing, step / (2 * FOCI - 2), positions, radii_mm, light)
-        at_stops.append([looks[stop] for stop in range(len(STOPS))])
+        outlines_at = _outlines_by_stop(focusing, step / (2 * FOCI - 2), positions, radii_mm, light)
+        at_stops.append([outlines_at[stop] for stop in range(len(STOPS))])
         if step % 2 == 0:
-            between.append([[looks[cell + part] for part in _QUARTERS] for cell in cells])
-    nodes = _lit_everywhere(np.array([[_ellipses(look) for look in row] for row in at_stops[::2]])[:, :, ::2])
+            between.append([[outlines_at[cell + part] for part in _QUARTERS] for cell in cells])
+    nodes = _without_gaps(np.array([[_ellipses(outline) for outline in row] for row in at_stops[::2]])[:, :, ::2])
     # Growth of each ellipse that is needed to hold all light at neighbouring radii and foci.
-    outer = _norms_at(at_stops, nodes, lambda look: (look.l, look.m))
+    outer = _norms_at(at_stops, nodes, lambda outline: (outline.l, outline.m))
     growth = np.fmax(np.fmax.reduce(outer, axis=-1), 1)
     nodes[..., 1:] *= maximum_filter(growth, (3, 1, 3), mode="nearest")[::2, :, ::2, None] * _MARGIN
-    inner = np.fmin.reduce(_norms_at(at_stops, nodes, lambda look: (look.inner_l, look.inner_m)), axis=-1)
+    inner = np.fmin.reduce(_norms_at(at_stops, nodes, lambda outline: (outline.inner_l, outline.inner_m)), axis=-1)
     hole = minimum_filter(np.nan_to_num(inner, nan=np.inf), 3, mode="nearest")[::2, :, ::2] - _HOLE_MARGIN
     hole = np.where(np.isfinite(hole) & (hole > _HOLE_MARGIN), hole, 0)
     bulge = np.zeros(hole.shape)
@@ -89,8 +91,8 @@ def _drift(focusing: FocusRange, radii_mm: Doubles, colours: Mapping[float, floa
     for row, focus in zip(drift, np.linspace(0, 1, FOCI), strict=True):
         lens, middles = focusing.lens_at(focus), []
         for wavelength_nm in ends:
-            look = outlines(lens, radii_mm, rear_boxes(lens, radii_mm), [(wavelength_nm, 0 * radii_mm)], 3)
-            low, high = np.fmin.reduce(look.l, axis=1), np.fmax.reduce(look.l, axis=1)
+            outline = outlines(lens, radii_mm, rear_boxes(lens, radii_mm), [(wavelength_nm, 0 * radii_mm)], 3)
+            low, high = np.fmin.reduce(outline.l, axis=1), np.fmax.reduce(outline.l, axis=1)
             middles.append(0.5 * (low + high))
         row[:] = np.nan_to_num((middles[0] - middles[1]) / spread)
         widths.append(np.nan_to_num(high - low, nan=np.inf))
@@ -101,45 +103,46 @@ def _drift(focusing: FocusRange, radii_mm: Doubles, colours: Mapping[float, floa
 def _reach_mm(focusing: FocusRange, wavelengths_nm: Iterable[float]) -> float:
     """Radius of the image circle at the focus, infinity or nearest, at which it is larger; at most _REACH half
     diagonals."""
-    most = _REACH * 0.5 * float(np.hypot(*focusing.lens.film_mm))
+    largest = _REACH * 0.5 * float(np.hypot(*focusing.lens.film_mm))
     edge = 0.0
     for focus in (0.0, 1.0):
         lens = focusing.lens_at(focus)
-        low, high = 0.0, most
+        low, high = 0.0, largest
         for _ in range(3):
             radii_mm = np.linspace(low, high, 17)
             light = [(wavelength_nm, 0 * radii_mm) for wavelength_nm in wavelengths_nm]
             lit = outlines(lens, radii_mm, rear_boxes(lens, radii_mm), light, 2).lit
             if lit[-1]:
                 break
-            at = int(np.flatnonzero(lit).max(initial=0))
-            low, high = radii_mm[at], radii_mm[at + 1]
+            last = int(np.flatnonzero(lit).max(initial=0))
+            low, high = radii_mm[last], radii_mm[last + 1]
         edge = max(edge, high)
     return edge
 
 
-def _looks(
+def _outlines_by_stop(
     focusing: FocusRange, focus: float, positions: Sequence[float], radii_mm: Doubles, light: Light
 ) -> dict[float, Outlines]:
     """Outlines by position in the list of stops (fractional between them), widest first: each lies within the
     previous."""
     lens = focusing.lens_at(focus)
     boxes, rounds = rear_boxes(lens, radii_mm), 3
-    looks = {}
+    outlines_at = {}
     for position in positions:
         stop = float(np.interp(position, range(len(STOPS)), STOPS))
         closed = lens.with_surface(lens.stop_index, clear_semi_diameter_mm=stop * lens.stop_semi_diameter_mm)
-        looks[position] = outlines(closed, radii_mm, boxes, light, rounds)
-        boxes, rounds = looks[position].boxes, 1
-    return looks
+        outlines_at[position] = outlines(closed, radii_mm, boxes, light, rounds)
+        boxes, rounds = outlines_at[position].boxes, 1
+    return outlines_at
 
 
-def _ellipses(look: Outlines) -> Doubles:
-    """(R, 3): smallest ellipses centred on the l axis that enclose the outlines; NaN: no light."""
-    low, high, top = (box[:, None] for box in look.boxes.T)
+def _ellipses(outline: Outlines) -> Doubles:
+    """(R, 3): centre in l and half axes in l and m of the smallest ellipses that enclose the outlines; NaN: no
+    light."""
+    low, high, top = (box[:, None] for box in outline.boxes.T)
     half = 0.5 * (high - low)
-    l = np.nan_to_num((look.l - 0.5 * (low + high)) / half)  # noqa: E741
-    m = np.nan_to_num(look.m / top)
+    l = np.nan_to_num((outline.l - 0.5 * (low + high)) / half)  # noqa: E741
+    m = np.nan_to_num(outline.m / top)
     middle, ratio, best = np.zeros(len(l)), np.zeros(len(l)), np.full(len(l), np.inf)
     # The area is convex in the centre and in the logarithm of the axes' ratio, so a search with ever finer steps
     # converges.
@@ -153,17 +156,17 @@ def _ellipses(look: Outlines) -> Doubles:
             best, middle, ratio = np.where(better, area, best), np.where(better, c, middle), np.where(better, k, ratio)
     size = np.sqrt(best * np.exp(ratio))
     columns = [0.5 * (low + high)[:, 0] + middle * half[:, 0], size * half[:, 0], size / np.exp(ratio) * top[:, 0]]
-    return np.where(look.lit[:, None], np.stack(columns, axis=1), np.nan)
+    return np.where(outline.lit[:, None], np.stack(columns, axis=1), np.nan)
 
 
-def _lit_everywhere(nodes: Doubles) -> Doubles:
+def _without_gaps(nodes: Doubles) -> Doubles:
     """Fills ellipses of film points without light with those of a wider stop or the previous row, for interpolation."""
     nodes = nodes.copy()
     for axis in (1, 2):
         moved = np.moveaxis(nodes, axis, 0)
-        for before, node in pairwise(moved):
-            dark = np.isnan(node)
-            node[dark] = before[dark]
+        for previous, node in pairwise(moved):
+            unlit = np.isnan(node)
+            node[unlit] = previous[unlit]
     return nodes
 
 
@@ -182,22 +185,25 @@ def _norms(l: Doubles, m: Doubles, ellipses: Doubles) -> Doubles:  # noqa: E741
 
 
 def _norms_at(
-    looks: Sequence[Sequence[Outlines]], nodes: Doubles, points_of: Callable[[Outlines], tuple[Doubles, Doubles]]
+    outlines_at: Sequence[Sequence[Outlines]], nodes: Doubles, points_of: Callable[[Outlines], tuple[Doubles, Doubles]]
 ) -> Doubles:
     """(foci, stops, radii, P): norms of the points of each outline in its interpolated ellipse."""
-    tried = _between(_between(nodes, 0), 2)
+    ellipses = _between(_between(nodes, 0), 2)
     return np.array(
-        [[_norms(*points_of(look), tried[i, j]) for j, look in enumerate(row)] for i, row in enumerate(looks)]
+        [
+            [_norms(*points_of(outline), ellipses[i, j]) for j, outline in enumerate(row)]
+            for i, row in enumerate(outlines_at)
+        ]
     )
 
 
-def _bulge(looks: Sequence[Outlines], wide: Doubles, narrow: Doubles) -> Doubles:
+def _bulge(outlines_at: Sequence[Outlines], wide: Doubles, narrow: Doubles) -> Doubles:
     """(rows,): relative growth that the interpolated ellipses need half-way between two stops. With vignetting, the
     pupil is limited by rims at the wide stop and by the stop at the narrow one, so that in between it is larger than
     their interpolation."""
-    lacking = []
-    for part, look in zip(_QUARTERS, looks, strict=True):
-        norms = np.fmax.reduce(_norms(look.l, look.m, wide + part * (narrow - wide)), axis=1)
-        lacking.append((np.fmax(norms, 1) - 1) / (4 * part * (1 - part)))
-    bulges: Doubles = maximum_filter(np.max(lacking, axis=0), 3, mode="nearest")[::2]
+    growths = []
+    for part, outline in zip(_QUARTERS, outlines_at, strict=True):
+        norms = np.fmax.reduce(_norms(outline.l, outline.m, wide + part * (narrow - wide)), axis=1)
+        growths.append((np.fmax(norms, 1) - 1) / (4 * part * (1 - part)))
+    bulges: Doubles = maximum_filter(np.max(growths, axis=0), 3, mode="nearest")[::2]
     return bulges

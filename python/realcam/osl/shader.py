@@ -18,8 +18,8 @@ from .pupil_table import STOPS, PupilTable, pupil_table
 
 _CELLS = 64
 """Number of strata of the spectrum."""
-_SEEN_NM = (420.0, 680.0)
-"""Wavelengths whose light the pupil table holds completely, in addition to the design wavelength."""
+_PUPIL_WAVELENGTHS_NM = (420.0, 680.0)
+"""Wavelengths whose rays the pupil table contains, in addition to those of the design wavelength."""
 
 
 def shader_text(lens: Lens) -> str:
@@ -34,14 +34,14 @@ def shader_text(lens: Lens) -> str:
     edges_nm = np.append(spectrum[:, 0], spectrum[-1, 1])
     squares = squared_indices(lens, list(np.linspace(edges_nm[1], edges_nm[-2], 40)))
     disperses = any(len(square) > 1 for square in squares)
-    seen = (lens.wavelength_nm, *_SEEN_NM) if disperses else (lens.wavelength_nm,)
-    table = pupil_table(focusing, dict(zip(seen, colour_variable(lens, np.array(seen)), strict=True)))
-    shapes = aspheres(focusing, table, seen)
-    numbers = {
+    pupil_nm = (lens.wavelength_nm, *_PUPIL_WAVELENGTHS_NM) if disperses else (lens.wavelength_nm,)
+    table = pupil_table(focusing, dict(zip(pupil_nm, colour_variable(lens, np.array(pupil_nm)), strict=True)))
+    shapes = aspheres(focusing, table, pupil_nm)
+    numbers = {  # values for the templates below
         "reach": float_text(table.reach_mm),
         "wide": float_text(lens.wide_open().f_number),
-        "full": _full(lens),
-        "length": float_text(_length(lens, focusing)),
+        "full": _full_stop_radius(lens),
+        "length": float_text(_constant_length_mm(lens, focusing)),
         "moves": "".join(f" + gap_{i + 1}" for i in focusing.gaps_mm),
         "focal_length": float_text(abs(lens.first_order().effective_focal_length_mm)),
     }
@@ -59,7 +59,7 @@ def shader_text(lens: Lens) -> str:
         _START.format(**numbers),
         _focus(focusing),
         _colour(lens, spectrum, edges_nm) if disperses else "    float colour = 0;\n    color film = 1;\n",
-        _DRAW.format(**numbers),
+        _SAMPLE.format(**numbers),
         _surfaces(lens, focusing, squares),
         _END.format(**numbers),
         "}",
@@ -67,6 +67,8 @@ def shader_text(lens: Lens) -> str:
     return "\n".join(part for part in parts if part) + "\n"
 
 
+# Parts of the shader's body. Braces are doubled; {reach}: radius of the image circle, mm; {wide}: f-number wide open;
+# {full}: radius of the fully open stop, mm; {length}{moves}: distance from the front vertex to the film, mm.
 _START = """\
     // The film point, upside down as the image is, in mm.
     vector size = 0;
@@ -77,7 +79,7 @@ _START = """\
     throughput = 0;
     if (radius >= {reach}) return;
 
-    // How far the diaphragm is open.
+    // Opening of the diaphragm, relative to the fully open stop; its apothem, and the radius to the blades' corners.
     float open = f_number > 0 ? min(1, {wide} / f_number) : 1;
     float stop_radius = open * {full};
     float apothem = stop_radius;
@@ -91,8 +93,8 @@ _START = """\
     vector chance = camera_shader_random_sample();
 """
 
-_DRAW = """\
-    // A direction, evenly out of the ellipse that holds the pupil of this film point.
+_SAMPLE = """\
+    // A direction, uniformly distributed in the ellipse that contains the pupil of this film point.
     float middle = 0;
     float half_l = 0;
     float half_m = 0;
@@ -109,15 +111,15 @@ _DRAW = """\
 """
 
 _END = """\
-    // From the lens's frame, in mm, to the camera's, whose origin is the middle of the film.
+    // Converts from the lens's frame, in mm, to the camera's, whose origin is the centre of the film.
     float depth = {length}{moves};
     position = point(at[0], at[1], depth - at[2]) * (0.001 / metres_per_unit);
     direction = normalize(vector(way[0], way[1], -way[2]));
-    // The irradiance is the area of the directions that pass. One more factor makes the middle of the film 1.
+    // The irradiance is the area of the directions that pass. keep_brightness normalises it to 1 at the film's centre.
     float brightness = M_PI * half_l * half_m * (1 - hole * hole);
     if (keep_brightness) brightness *= 4 * pow({wide} / open, 2) / M_PI;
     throughput = brightness * film;
-    // From pixel to pixel, as without distortion: for bump maps and wireframes, at a part of the cost.
+    // Ray differentials of a lens without distortion: approximate but cheap, for bump maps and wireframes.
     vector across = Dx(raster);
     vector up = Dy(raster);
     dPdx = 0;
@@ -128,6 +130,7 @@ _END = """\
 
 
 def _heading(lens: Lens) -> str:
+    """Comment at the top of the shader."""
     lines = [f"// {_comment_text(line)}" for line in (lens.title or lens.name, lens.source) if line]
     lines += ["// A camera for Blender 5 (Cycles), written by realcam from the lens's prescription.", ""]
     return "\n".join(lines)
@@ -139,36 +142,39 @@ def _comment_text(text: str) -> str:
 
 
 def _name(lens: Lens) -> str:
+    """Name of the shader: an identifier."""
     return "realcam_" + (re.sub(r"\W+", "_", lens.name, flags=re.ASCII).strip("_") or "lens")
 
 
 def _parameters(lens: Lens, focusing: FocusRange, disperses: bool) -> str:
+    """Declaration of the shader with its parameters and outputs."""
     focus_m = lens.focus_distance_m if math.isfinite(lens.focus_distance_m) else 0
     full_mm = lens.surfaces[lens.stop_index].clear_semi_diameter_mm
     wide = lens.wide_open().f_number
     f_number = wide * full_mm / lens.stop_semi_diameter_mm if lens.stop_semi_diameter_mm < full_mm else 0
     nearest = f"{focusing.nearest_m:.3g}"
+    # Type, name, default, help, and smallest value.
     rows = [
         (
             "float",
             "focus_m",
             focus_m,
-            f"Focus from the film; 0: that of the depth of field; nearest {nearest} m",
+            f"Focus distance from the film; 0: that of the depth of field; nearest {nearest} m",
             0,
         ),
-        ("float", "f_number", f_number, f"f-number of the ring; 0: wide open, f/{wide:.3g}", 0),
-        ("float", "blades", lens.iris_blades, "Blades of the diaphragm; 0: round", 0),
-        ("float", "rounding", lens.iris_rounding, "Of the blades: 0 is straight, 1 a circle", 0),
-        ("float", "rotation_deg", lens.iris_rotation_deg, "Of the first blade", None),
-        ("int", "dispersion", int(disperses), "Whether each glass has an index for each wavelength", None),
+        ("float", "f_number", f_number, f"f-number; 0: wide open, f/{wide:.3g}", 0),
+        ("float", "blades", lens.iris_blades, "Number of diaphragm blades; 0: circular", 0),
+        ("float", "rounding", lens.iris_rounding, "Rounding of the blades; 0: straight, 1: circular", 0),
+        ("float", "rotation_deg", lens.iris_rotation_deg, "Rotation of the diaphragm", None),
+        ("int", "dispersion", int(disperses), "Refractive indices depend on the wavelength", None),
         (
             "int",
             "keep_brightness",
             1,
-            "White is white in the middle at any f-number; else as the film is lit",
+            "Same brightness at the centre at any f-number; otherwise the illuminance of the film",
             None,
         ),
-        ("float", "metres_per_unit", 1, "Of the scene", 0),
+        ("float", "metres_per_unit", 1, "Metres per unit of the scene", 0),
     ]
     written = []
     for kind, name, value, help_text, least in rows:
@@ -189,8 +195,9 @@ def _parameters(lens: Lens, focusing: FocusRange, disperses: bool) -> str:
 
 
 def _focus(focusing: FocusRange) -> str:
+    """Statements that compute the focus parameter and the variable gaps from the focus distance."""
     lines = [
-        "    // Focus: 0 at infinity, 1 at the nearest.",
+        "    // Focus parameter: 0 at infinity, 1 at the nearest focus.",
         "    float object = focus_m;",
         "    if (object <= 0) {",
         '        getattribute("cam:focal_distance", object);',
@@ -208,11 +215,15 @@ def _focus(focusing: FocusRange) -> str:
 
 
 def _colour(lens: Lens, spectrum: np.ndarray, edges_nm: np.ndarray) -> str:
+    """Statements that sample a wavelength.
+
+    spectrum: parts of equal probability for white light, with their RGB. edges_nm: their ends.
+    """
     parts = len(spectrum) // _CELLS
     scale, offset = colour_scale(lens)
     return f"""\
-    // A wavelength: the first digits of a random number choose {parts} of the equally probable parts of the spectrum,
-    // and a hash one of them and the place in it.
+    // A wavelength: the first digits of a random number select {parts} of the equally probable parts of the spectrum,
+    // and a hash selects one of them and the position in it.
     float colour = 0;
     color film = 1;
     if (dispersion) {{
@@ -230,8 +241,8 @@ def _colour(lens: Lens, spectrum: np.ndarray, edges_nm: np.ndarray) -> str:
 
 
 def _media(squares: list[list[float]]) -> tuple[list[str], list[str]]:
-    """Returns declarations of the squared indices that depend on wavelength, and the name or number of each
-    medium's."""
+    """Returns declarations of the squared indices that depend on the wavelength, and for each medium the variable or
+    number of its squared index. squares: of squared_indices()."""
     names: dict[tuple[float, ...], str] = {}
     declared = ["    // Squares of the indices of glasses."]
     for square in map(tuple, squares):
@@ -244,10 +255,11 @@ def _media(squares: list[list[float]]) -> tuple[list[str], list[str]]:
 
 
 def _surfaces(lens: Lens, focusing: FocusRange, squares: list[list[float]]) -> str:
+    """Statements that trace the ray through the surfaces, by the functions of functions.py."""
     gaps = gaps_of(focusing.lens)
     lines, media = _media(squares)
     lines.append("    // The surfaces, from the film to the scene.")
-    forwards = -1
+    forwards = -1  # sign of the ray's z direction
     for index in reversed(range(len(lens.surfaces))):
         surface = lens.surfaces[index]
         gap = f"gap_{index + 1}" if index in focusing.gaps_mm else float_text(gaps[index])
@@ -272,15 +284,18 @@ def _surfaces(lens: Lens, focusing: FocusRange, squares: list[list[float]]) -> s
     return "\n".join(lines) + "\n"
 
 
-def _length(lens: Lens, focusing: FocusRange) -> float:
+def _constant_length_mm(lens: Lens, focusing: FocusRange) -> float:
+    """Sum of the gaps that do not depend on the focus."""
     return sum(gap for i, gap in enumerate(gaps_of(focusing.lens)) if i not in focusing.gaps_mm)
 
 
-def _full(lens: Lens) -> str:
+def _full_stop_radius(lens: Lens) -> str:
+    """Radius of the fully open stop, mm."""
     return float_text(lens.surfaces[lens.stop_index].clear_semi_diameter_mm)
 
 
 def _pupil_numbers(table: PupilTable) -> dict[str, object]:
+    """Values for the template PUPIL."""
     blocked, drifts = bool(table.ellipses[..., 4].any()), bool(table.drift.any())
     rows = table.ellipses.shape[2]
     columns = 5 if blocked else 4

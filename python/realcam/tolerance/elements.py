@@ -7,6 +7,7 @@ from ..derivatives.variable import check_surface_exists
 
 
 def has_glass_behind(lens: Lens, surface: int) -> bool:
+    """True if the medium behind the surface is not air."""
     return lens.surfaces[surface].material.index(lens.wavelength_nm) != 1
 
 
@@ -27,7 +28,7 @@ def elements_of(lens: Lens) -> list[tuple[int, int]]:
 def check_surface(lens: Lens, surface: int) -> None:
     """Raises InputError if the surface does not exist."""
     if not isinstance(surface, int) or isinstance(surface, bool):
-        raise InputError(f"{surface!r:.40} is no surface; expected a number from 0")
+        raise InputError(f"expected a surface, as an index from 0; found {surface!r:.40}")
     check_surface_exists(lens, surface)
 
 
@@ -37,6 +38,6 @@ def check_element(lens: Lens, first: int, last: int) -> None:
     check_surface(lens, last)
     if last <= first:
         raise InputError(
-            f"surface {first + 1} alone is no element; specify the numbers of its first and last face, or a "
+            f"an element needs a last surface behind its first one, surface {first + 1}; for a single face use a "
             "tolerance of the surface"
         )

@@ -19,7 +19,8 @@ class CopyFigures:
     rms_spot_mm: (C, F), RMS radius about the polychromatic centroid. distortion: (C, F), relative error of the distance
     from the axis against the paraxial scale. light: (C, F), fraction of the stop that passes light.
     chief_ray_mm: (C, F, 2), film points. focal_length_mm: (C,), of parabasal rays, mean of both meridians.
-    film_shift_mm: (C,), away from the lens. film_slope: (C, 2), of the film along x and y. element_shift_mm: (C, 3).
+    film_shift_mm: (C,), away from the lens. film_slope: (C, 2), dz/dx and dz/dy of the film. element_shift_mm: (C, 3),
+    along x, y and z.
     """
 
     mtf: Doubles
@@ -37,6 +38,7 @@ class CopyFigures:
 
     @staticmethod
     def joined(parts: list[dict[str, Doubles]]) -> CopyFigures:
+        """Concatenates blocks of copies, as the core returns them."""
         return CopyFigures(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
     def mean_mtf(self, frequency: int) -> Doubles:

@@ -10,6 +10,7 @@ from ..analysis import style
 from .sensitivities import Sensitivity
 from .study import ToleranceStudy
 
+#: Labels of the measures of ToleranceStudy.measure.
 MEASURES = {
     "mtf": "mean MTF",
     "lowest_mtf": "MTF of the worst field",
@@ -22,12 +23,12 @@ MEASURES = {
 def plot_yield(study: ToleranceStudy, axes: Axes) -> None:
     """Plots the fraction of copies that reach an MTF or more, for the mean MTF and for the worst field."""
     share = 100 * (np.arange(len(study)) + 1) / len(study)
-    for number, name in enumerate(("mtf", "lowest_mtf")):
-        colour = style.field_colour(number)
+    for index, name in enumerate(("mtf", "lowest_mtf")):
+        colour = style.field_colour(index)
         axes.plot(np.sort(study.measure(name))[::-1], share, color=colour, label=MEASURES[name])
         axes.axvline(study.nominal_measure(name), color=colour, linestyle=":", linewidth=0.9)
     axes.set_ylim(0, 102)
-    axes.set_xlabel(f"MTF at {study.frequencies_per_mm[study.main]:.4g}/mm (dotted: as drawn)")
+    axes.set_xlabel(f"MTF at {study.frequencies_per_mm[study.main]:.4g}/mm (dotted: nominal)")
     axes.set_ylabel("copies at least as good / %")
     axes.set_title("Yield")
     axes.legend()
@@ -38,7 +39,7 @@ def plot_distribution(study: ToleranceStudy, name: str, axes: Axes) -> None:
     scale = 100 if name == "distortion" else 1
     values = scale * study.measure(name)
     axes.hist(values[np.isfinite(values)], bins=min(40, max(5, len(study) // 12)), color=style.BLUE)
-    axes.axvline(scale * study.nominal_measure(name), color=style.text_colour(), linestyle=":", label="as drawn")
+    axes.axvline(scale * study.nominal_measure(name), color=style.text_colour(), linestyle=":", label="nominal")
     axes.set_xlabel(MEASURES[name])
     axes.set_ylabel("copies")
     axes.set_title(MEASURES[name].split(" /")[0])
@@ -54,7 +55,7 @@ def plot_fields(study: ToleranceStudy, axes: Axes) -> None:
     axes.vlines(positions, quarter, three, color=style.BLUE, linewidth=5)
     axes.plot(positions, middle, "_", color=style.text_colour(), markersize=9, label="median")
     axes.plot(
-        positions, np.nan_to_num(study.nominal.mtf[0, ..., study.main]).mean(1), "x", color=style.RED, label="as drawn"
+        positions, np.nan_to_num(study.nominal.mtf[0, ..., study.main]).mean(1), "x", color=style.RED, label="nominal"
     )
     axes.set_xticks(positions, [f"{x:.3g}°, {y:.3g}°" for x, y in study.fields_deg])
     axes.set_xlim(-0.5, len(positions) - 0.5)
@@ -70,12 +71,13 @@ def plot_offenders(offenders: list[Sensitivity], axes: Axes) -> None:
     axes.barh(positions, [offender.loss for offender in offenders], color=style.RED, height=0.65)
     axes.set_yticks(positions, [with_limit(offender) for offender in offenders])
     axes.axvline(0, color=style.GREY, linewidth=0.6)
-    axes.set_xlabel("mean MTF lost")
+    axes.set_xlabel("loss of mean MTF")
     axes.set_title("Worst offenders")
     axes.grid(visible=False, axis="y")
 
 
 def with_limit(offender: Sensitivity) -> str:
+    """Label of a tolerance with its limit."""
     t = offender.tolerance
     return f"{t.label}, ±{t.limit:.3g}{'' if t.unit in ('', chr(39), '%') else ' '}{t.unit}"
 

@@ -27,8 +27,8 @@ thead th { border-bottom: 1px solid var(--faint); }
 .wide { overflow-x: auto; }
 @media print { body { font-size: 9pt; max-width: none; margin: 0; } svg, tr { break-inside: avoid; } }
 """
-SHOWN = 12
-LOSS = 0.02
+SHOWN = 12  # tolerances in the plot of the worst offenders
+LOSS = 0.02  # of mean MTF, for the inverse sensitivities
 
 
 def save_tolerance_report(
@@ -43,10 +43,11 @@ def save_tolerance_report(
 
 
 def page_of(study: ToleranceStudy, theme: str | None, loss: float) -> str:
+    """The report as an HTML page; arguments as for save_tolerance_report."""
     offenders = study.sensitivities()
-    may_be = {}
+    allowed = {}  # limits at which a tolerance alone costs `loss`
     if loss < study.nominal_measure("mtf"):
-        may_be = {(t.kind, t.first, t.last): t.limit for t in study.inverse_sensitivities(loss)}
+        allowed = {(t.kind, t.first, t.last): t.limit for t in study.inverse_sensitivities(loss)}
     with style.themed("light", 7.0):
         figure = inline_svg(study_figure(study, offenders[:SHOWN]), "tolerance")
     title = html.escape(f"{study.lens.title or study.lens.name or 'lens'}: tolerances")
@@ -59,47 +60,50 @@ def page_of(study: ToleranceStudy, theme: str | None, loss: float) -> str:
             f"{o.lowest_mtf[1]:+.4f}",
             f"{1000 * max(o.spot_mm):+.2f}",
             f"{o.focal_length_mm[1]:+.4f}",
-            _limit(may_be.get((o.tolerance.kind, o.tolerance.first, o.tolerance.last))),
+            _limit(allowed.get((o.tolerance.kind, o.tolerance.first, o.tolerance.last))),
         )
         for o in offenders
     ]
     sensitivities = _table(
-        ["tolerance", "mean MTF −", "+", "worst field −", "+", "spot / µm", "focal length / mm", "may be"], rows
+        ["tolerance", "mean MTF −", "+", "worst field −", "+", "spot / µm", "focal length / mm", "allowed"], rows
     )
-    whole = "" if study.is_whole else " The study was ended before all copies were looked at."
+    whole = "" if study.is_whole else " The study was stopped before all copies were evaluated."
     return f"""{page_top(title, STYLE, theme)}
 <p>{len(study)} copies, seed {study.seed}; {html.escape(_compensators(study))}.{whole}</p>
 {figure}
 <h2>Copies</h2>
-<div class="wide">{_table(["", "as drawn", *(f"{percent_text(x)} below" for x in SHARES)], _quantiles(study))}</div>
+<div class="wide">{_table(["", "nominal", *(f"{percent_text(x)} below" for x in SHARES)], _quantiles(study))}</div>
 <h2>Each tolerance alone</h2>
 <div class="wide">{sensitivities}</div>
-<p class="note">Changes at the lower and the upper limit, with the compensators set; what has a direction, in that which
-costs more. MTF is that of rays at {study.frequencies_per_mm[study.main]:.4g} periods per mm, times what diffraction
-leaves of a perfect lens. "May be": the limit at which a tolerance alone costs {loss:g} of the mean MTF.</p>
+<p class="note">Changes at the lower and the upper limit, with the compensators set; for a tolerance with a direction,
+in the one with the larger loss. MTF is the geometric MTF at {study.frequencies_per_mm[study.main]:.4g} periods per mm
+times the diffraction limit. "Allowed": the limit at which a tolerance alone costs {loss:g} of the mean MTF.</p>
 </html>
 """
 
 
 def _quantiles(study: ToleranceStudy) -> Iterable[tuple[str, ...]]:
-    for name, words in MEASURES.items():
+    """Yields the rows of the table of measures: label, nominal value, quantiles."""
+    for name, label in MEASURES.items():
         scale, digits = (100, 3) if name == "distortion" else (1, 4)
         values = [study.nominal_measure(name), *study.quantiles(name)]
-        yield (words, *(f"{scale * value:.{digits}f}" for value in values))
+        yield (label, *(f"{scale * value:.{digits}f}" for value in values))
 
 
 def _compensators(study: ToleranceStudy) -> str:
+    """Description of the compensators."""
     chosen = study.compensators
-    words = ["refocused"] if chosen.refocus else []
+    parts = ["refocused"] if chosen.refocus else []
     if chosen.film_tilt:
-        words.append("film tilted")
+        parts.append("film tilted")
     if chosen.shift is not None:
         s = chosen.shift
-        words.append(f"surfaces {s.first + 1} to {s.last + 1} moved {s.direction} the axis")
-    return ", ".join(words) or "nothing is compensated"
+        parts.append(f"surfaces {s.first + 1} to {s.last + 1} moved {s.direction} the axis")
+    return ", ".join(parts) or "no compensators"
 
 
 def _limit(value: float | None) -> str:
+    """Text of an allowed limit; "any" for inf."""
     return "" if value is None else "any" if math.isinf(value) else f"{value:.3g}"
 
 

@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 
 from .._core import InputError, _ToleranceEvaluator
 from .figures import CopyFigures, Doubles
-from .tolerances import MOST, TILTS_MOST_ARCMIN, Tolerance, errors_of
+from .tolerances import MAX_LIMITS, MAX_TILT_ARCMIN, Tolerance, errors_of
 
-CLOSE = 1e-3  # relative to the loss: limits are shown with three digits
-STEPS = 20
+TOLERANCE = 1e-3  # of the loss, relative; limits are shown with three digits
+MAX_STEPS = 20  # of the root search
 
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Effect of one tolerance at its lower and upper limit; a directed one is tried along x and y, and the worse
-    counts.
+    """Effect of one tolerance at its lower and upper limit.
 
-    All values are changes against the nominal lens, at the lower limit and the upper. mtf: mean MTF at the middle
+    A directed tolerance is evaluated along x and y, and the direction with the larger loss counts. All values are
+    pairs: changes against the nominal lens at the lower and at the upper limit. mtf: mean MTF at the middle
     frequency. lowest_mtf: MTF of the worst field. spot_mm: largest RMS radius. focal_length_mm: focal length.
     """
 
@@ -39,90 +39,95 @@ class Sensitivity:
         return -min(self.mtf)
 
     def as_values(self) -> dict[str, Any]:
+        """The fields as plain values, for JSON."""
         t = self.tolerance
         return {"tolerance": t.label, "limit": t.limit, "unit": t.unit, **dataclasses.asdict(self), "loss": self.loss}
 
 
 def sensitivities(
-    judge: _ToleranceEvaluator, items: list[Tolerance], nominal: CopyFigures, frequency: int
+    evaluator: _ToleranceEvaluator, items: list[Tolerance], nominal: CopyFigures, frequency: int
 ) -> list[Sensitivity]:
+    """Sensitivities in descending order of loss. nominal: figures of the nominal lens. frequency: index."""
     rows = _rows(items, np.array([item.limit for item in items]))
-    figures = CopyFigures.joined([judge.judge(errors_of(items), rows)])
-    before = nominal.mean_mtf(frequency)[0]
+    figures = CopyFigures.joined([evaluator.judge(errors_of(items), rows)])
+    nominal_mtf = nominal.mean_mtf(frequency)[0]
     # Each error of a tolerance has two rows: its lower limit and its upper limit.
-    mtf = figures.mean_mtf(frequency) - before
+    mtf = figures.mean_mtf(frequency) - nominal_mtf
     others = (
         figures.lowest_mtf(frequency) - nominal.lowest_mtf(frequency)[0],
         figures.rms_spot_mm.max(1) - nominal.rms_spot_mm.max(),
         figures.focal_length_mm - nominal.focal_length_mm[0],
     )
-    found, row = [], 0
+    result, row = [], 0
     for item in items:
         ends = range(row, row + 2 * len(item.errors), 2)
         worse = min(ends, key=lambda k: min(mtf[k], mtf[k + 1]))
-        found.append(Sensitivity(item, *((float(of[worse]), float(of[worse + 1])) for of in (mtf, *others))))
+        changes = ((float(change[worse]), float(change[worse + 1])) for change in (mtf, *others))
+        result.append(Sensitivity(item, *changes))
         row += 2 * len(item.errors)
-    return sorted(found, key=lambda s: -s.loss)
+    return sorted(result, key=lambda s: -s.loss)
 
 
 def inverse_sensitivities(
-    judge: _ToleranceEvaluator, items: list[Tolerance], nominal: CopyFigures, frequency: int, loss: float
+    evaluator: _ToleranceEvaluator, items: list[Tolerance], nominal: CopyFigures, frequency: int, loss: float
 ) -> list[Tolerance]:
     """Returns the tolerances with the limits at which each alone costs `loss` of the mean MTF; inf if it never does.
 
-    Solves for all tolerances that have not converged at once, by the Illinois method (Dowell and Jarratt 1971).
+    The limits of all tolerances are found simultaneously by the Illinois method (Dowell and Jarratt 1971). Raises
+    InputError if the loss is not between 0 and the nominal MTF.
     """
-    before = float(nominal.mean_mtf(frequency)[0])
-    if not 0 < loss < before:
+    nominal_mtf = float(nominal.mean_mtf(frequency)[0])
+    if not 0 < loss < nominal_mtf:
         raise InputError(
-            f"loss is {loss!r:.40}; expected more than 0 and less than the mean MTF as drawn, {before:.3g}"
+            f"loss is {loss!r:.40}; expected more than 0 and less than the nominal mean MTF, {nominal_mtf:.3g}"
         )
 
     def excess(which: NDArray[np.intp], limits: Doubles) -> Doubles:
-        """Loss of mean MTF of each of these tolerances at its limit, minus the target loss."""
-        some = [items[k] for k in which]
-        mtf = CopyFigures.joined([judge.judge(errors_of(some), _rows(some, limits))]).mean_mtf(frequency)
+        """Loss of mean MTF of each of these tolerances at its worse limit, minus the target loss."""
+        chosen = [items[k] for k in which]
+        mtf = CopyFigures.joined([evaluator.judge(errors_of(chosen), _rows(chosen, limits))]).mean_mtf(frequency)
         worst, row = [], 0
-        for item in some:
-            worst.append(before - mtf[row : row + 2 * len(item.errors)].min() - loss)
+        for item in chosen:
+            worst.append(nominal_mtf - mtf[row : row + 2 * len(item.errors)].min() - loss)
             row += 2 * len(item.errors)
         return np.array(worst)
 
-    most = np.array([_most(item) for item in items])
-    low, high = np.zeros(len(items)), np.minimum([item.limit for item in items], most)
+    largest = np.array([_largest_limit(item) for item in items])
+    # Brackets of the limits, and the excess at their ends.
+    low, high = np.zeros(len(items)), np.minimum([item.limit for item in items], largest)
     below, above = np.full(len(items), -loss), np.zeros(len(items))
-    which = np.arange(len(items))
+    which = np.arange(len(items))  # indices of the tolerances whose upper bound is still too small
     for _ in range(13):
         above[which] = excess(which, high[which])
-        which = which[(above[which] < 0) & (high[which] < most[which])]
+        which = which[(above[which] < 0) & (high[which] < largest[which])]
         if not len(which):
             break
         low[which], below[which] = high[which], above[which]
-        high[which] = np.minimum(4 * high[which], most[which])
+        high[which] = np.minimum(4 * high[which], largest[which])
     limits = np.where(above < 0, math.inf, high)
-    which = np.flatnonzero(above > CLOSE * loss)
+    which = np.flatnonzero(above > TOLERANCE * loss)  # indices of those that have not converged
     last = np.zeros(len(items))
-    for _ in range(STEPS):
+    for _ in range(MAX_STEPS):
         if not len(which):
             break
-        share = below[which] / (below[which] - above[which])
-        limits[which] = low[which] + share * (high[which] - low[which])
-        found = excess(which, limits[which])
-        side = np.where(found < 0, -1, 1)
+        fraction = below[which] / (below[which] - above[which])
+        limits[which] = low[which] + fraction * (high[which] - low[which])
+        excesses = excess(which, limits[which])
+        side = np.where(excesses < 0, -1, 1)
         # Illinois rule: halves the value at an end that is retained twice, so that it does not remain for ever.
         stays = side == last[which]
         last[which] = side
-        for of, there, other, end in ((side < 0, below, above, low), (side > 0, above, below, high)):
-            moved = which[of]
-            there[moved], end[moved] = found[of], limits[moved]
-            other[which[of & stays]] /= 2
-        which = which[np.abs(found) > CLOSE * loss]
+        for is_side, value, other_value, end in ((side < 0, below, above, low), (side > 0, above, below, high)):
+            moved = which[is_side]
+            value[moved], end[moved] = excesses[is_side], limits[moved]
+            other_value[which[is_side & stays]] /= 2
+        which = which[np.abs(excesses) > TOLERANCE * loss]
     return [dataclasses.replace(item, limit=float(limit)) for item, limit in zip(items, limits, strict=True)]
 
 
-def _most(item: Tolerance) -> float:
+def _largest_limit(item: Tolerance) -> float:
     """Largest limit that is tried; beyond it the lens would be a different one."""
-    return TILTS_MOST_ARCMIN if item.kind.endswith("arcmin") else MOST.get(item.kind, 1000 * item.limit)
+    return MAX_TILT_ARCMIN if item.kind.endswith("arcmin") else MAX_LIMITS.get(item.kind, 1000 * item.limit)
 
 
 def _rows(items: list[Tolerance], limits: Doubles) -> Doubles:

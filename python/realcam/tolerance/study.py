@@ -20,9 +20,9 @@ from .tolerances import Tolerance, Tolerances, drawn, errors_of
 
 Progress = Callable[[float], bool | None]
 
-MOST_COPIES = 1_000_000
-BLOCK = 64
-SHARES = (0.02, 0.1, 0.5, 0.9, 0.98)
+MAX_COPIES = 1_000_000
+BLOCK = 64  # copies between calls of progress
+SHARES = (0.02, 0.1, 0.5, 0.9, 0.98)  # default probabilities of quantiles
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class ToleranceStudy:
     each copy in the order of the items; a directed tolerance has two errors. fields_deg: (F, 2), angles towards x and
     y. frequencies_per_mm: (K,); measures of a single frequency use the middle one. nominal: figures of the lens without
     errors, as one copy. figures: figures of all copies. is_whole: False if the study ended before all copies were
-    evaluated.
+    evaluated. compensators: the selected ones.
     """
 
     lens: Lens
@@ -47,7 +47,7 @@ class ToleranceStudy:
     sizes: Doubles
     is_whole: bool
     compensators: Chosen
-    _judge: _ToleranceEvaluator = field(repr=False, compare=False)
+    _evaluator: _ToleranceEvaluator = field(repr=False, compare=False)
 
     def __len__(self) -> int:
         return len(self.figures)
@@ -63,7 +63,7 @@ class ToleranceStudy:
         if not 0 <= number < len(self):
             raise InputError(f"there is no copy {number}; there are {len(self)}, counted from 0")
         f = self.figures
-        return self._judge.copy(
+        return self._evaluator.copy(
             errors_of(self.items),
             self.sizes[number],
             float(f.film_shift_mm[number]),
@@ -78,12 +78,12 @@ class ToleranceStudy:
     def errors_of(self, number: int) -> list[tuple[Tolerance, Doubles]]:
         """Returns each tolerance with the error of a copy, in the unit of the tolerance: one number, or two if the
         tolerance is directed."""
-        found, column = [], 0
+        result, column = [], 0
         for item in self.items:
             width = len(item.errors)
-            found.append((item, self.sizes[number, column : column + width] / item.scale))
+            result.append((item, self.sizes[number, column : column + width] / item.scale))
             column += width
-        return found
+        return result
 
     def measure(self, name: str) -> Doubles:
         """(C,): "mtf", mean over the fields at the middle frequency; "lowest_mtf", MTF of the worst field; "spot_mm",
@@ -91,6 +91,7 @@ class ToleranceStudy:
         return measured(self.figures, name, self.main)
 
     def nominal_measure(self, name: str) -> float:
+        """A measure, as for `measure`, of the lens without errors. Raises InputError."""
         return float(measured(self.nominal, name, self.main)[0])
 
     def quantiles(self, name: str, shares: ArrayLike = SHARES) -> Doubles:
@@ -105,12 +106,12 @@ class ToleranceStudy:
         distortion, and maximum deviation of focal_length_mm from its nominal value. Raises InputError.
         """
         if not limits:
-            raise InputError("yield_of wants at least one limit, as lowest_mtf=0.3")
+            raise InputError("yield_of needs at least one limit, such as lowest_mtf=0.3")
         good = np.ones(len(self), bool)
         for name, limit in limits.items():
             values = self.measure(name)
             if not isinstance(limit, int | float) or math.isnan(limit):
-                raise InputError(f"{name}: {limit!r:.40} is no limit; expected a number")
+                raise InputError(f"{name}: the limit must be a number; found {limit!r:.40}")
             if name.endswith("mtf"):
                 good &= values >= limit
             elif name == "focal_length_mm":
@@ -125,7 +126,7 @@ class ToleranceStudy:
 
     @cached_property
     def _sensitivities(self) -> list[Sensitivity]:
-        return sensitivities(self._judge, self.items, self.nominal, self.main)
+        return sensitivities(self._evaluator, self.items, self.nominal, self.main)
 
     def worst_offenders(self, count: int = 10) -> list[Sensitivity]:
         """The `count` tolerances with the largest loss of mean MTF."""
@@ -135,7 +136,7 @@ class ToleranceStudy:
         """Limits at which each tolerance alone, at its worse limit, costs `loss` of the mean MTF, say 0.02.
 
         A tolerance that costs less at any size has the limit inf. Raises InputError."""
-        return inverse_sensitivities(self._judge, self.items, self.nominal, self.main, loss)
+        return inverse_sensitivities(self._evaluator, self.items, self.nominal, self.main, loss)
 
     def summary(self) -> dict[str, Any]:
         """The study as plain values, for JSON."""
@@ -159,6 +160,7 @@ class ToleranceStudy:
 
 
 def measured(figures: CopyFigures, name: str, frequency: int) -> Doubles:
+    """(C,): a measure of the copies, see ToleranceStudy.measure. frequency: index. Raises InputError."""
     if name == "mtf":
         return figures.mean_mtf(frequency)
     if name == "lowest_mtf":
@@ -207,8 +209,8 @@ def tolerance_study(
     drawing = Tolerances.grade(tolerances) if isinstance(tolerances, str) else tolerances
     if not isinstance(drawing, Tolerances):
         raise InputError("tolerances must be a realcam.Tolerances, or the name of a grade")
-    if isinstance(copies, bool) or not isinstance(copies, int) or not 1 <= copies <= MOST_COPIES:
-        raise InputError(f"copies is {copies!r:.40}; expected a whole number from 1 to {MOST_COPIES}")
+    if isinstance(copies, bool) or not isinstance(copies, int) or not 1 <= copies <= MAX_COPIES:
+        raise InputError(f"copies is {copies!r:.40}; expected a whole number from 1 to {MAX_COPIES}")
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise InputError(f"seed is {seed!r:.40}; expected a whole number of 0 or more")
     if sharpest_by not in ("mtf", "spot"):
@@ -216,7 +218,7 @@ def tolerance_study(
     if not 2 <= rings <= 100:
         raise InputError(f"rings is {rings!r:.40}; expected 2 to 100")
     if not lens.is_rotational:
-        raise InputError(f'tolerances are of lenses of revolution, with a flat film; lens "{lens.name}" is none')
+        raise InputError(f'tolerances need a rotationally symmetric lens with a flat film; lens "{lens.name}" is not')
     items = drawing.of(lens)
     from ..analysis.fields import default_frequencies_per_mm, numbers_of, wavelengths_of  # brings matplotlib
 
@@ -229,27 +231,38 @@ def tolerance_study(
     if not (frequencies > 0).all():
         raise InputError("frequencies_per_mm must be positive numbers")
     colours = wavelengths_of(lens, wavelengths_nm)
-    how = chosen(lens, compensators, fields)
-    judge = _ToleranceEvaluator(
+    selected = chosen(lens, compensators, fields)
+    evaluator = _ToleranceEvaluator(
         lens,
         np.deg2rad(fields),
         object_distance_m,
         np.column_stack([colours, np.ones_like(colours)]),
         frequencies.tolist(),
         rings,
-        how.refocus,
-        how.film_tilt,
+        selected.refocus,
+        selected.film_tilt,
         float(frequencies[len(frequencies) // 2]) if sharpest_by == "mtf" else None,
-        how.shift_words,
+        selected.shift_arguments,
     )
     errors = errors_of(items)
-    nominal = CopyFigures.joined([judge.judge(errors, np.zeros((1, len(errors))))])
+    nominal = CopyFigures.joined([evaluator.judge(errors, np.zeros((1, len(errors))))])
     sizes = drawn(items, drawing.distribution, copies, seed)
-    parts = _judged(judge, errors, sizes, progress)
+    parts = _evaluated(evaluator, errors, sizes, progress)
     figures = CopyFigures.joined(parts)
     done = len(figures)
     return ToleranceStudy(
-        lens, drawing, items, seed, fields, frequencies, nominal, figures, sizes[:done], done == copies, how, judge
+        lens,
+        drawing,
+        items,
+        seed,
+        fields,
+        frequencies,
+        nominal,
+        figures,
+        sizes[:done],
+        done == copies,
+        selected,
+        evaluator,
     )
 
 
@@ -260,13 +273,15 @@ def random_copy(lens: Lens, tolerances: Tolerances | str, *, seed: int | None = 
     return tolerance_study(lens, tolerances, 1, seed=drawn_seed, rings=6).copy(0)
 
 
-def _judged(
-    judge: _ToleranceEvaluator, errors: list[tuple[str, int, int]], sizes: Doubles, progress: Progress | None
+def _evaluated(
+    evaluator: _ToleranceEvaluator, errors: list[tuple[str, int, int]], sizes: Doubles, progress: Progress | None
 ) -> list[dict[str, Doubles]]:
+    """Figures of the copies with these error sizes, (C, E), in blocks; fewer if progress or an interrupt ends the
+    study."""
     parts: list[dict[str, Doubles]] = []
     for first in range(0, len(sizes), BLOCK):
         try:
-            parts.append(judge.judge(errors, sizes[first : first + BLOCK]))
+            parts.append(evaluator.judge(errors, sizes[first : first + BLOCK]))
             if progress is not None and progress(min(1.0, (first + BLOCK) / len(sizes))) is False:
                 break
         except KeyboardInterrupt:

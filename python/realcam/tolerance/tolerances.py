@@ -16,7 +16,8 @@ from .grades import GRADES
 Limits = float | Mapping[int, float] | None
 ElementLimits = float | Mapping[tuple[int, int], float] | None
 
-# For each field of Tolerances: quantity, unit, errors of the core that it consists of, factor to the errors' unit.
+# For each field of Tolerances: quantity, unit, names of the core's errors that it consists of (two if it is directed),
+# and factor from its unit to the errors' unit.
 KINDS: dict[str, tuple[str, str, tuple[str, ...], float]] = {
     "radius_mm": ("radius", "mm", ("radius",), 1.0),
     "radius_percent": ("radius", "%", ("radius_percent",), 1.0),
@@ -31,10 +32,11 @@ KINDS: dict[str, tuple[str, str, tuple[str, ...], float]] = {
     "element_decentre_mm": ("element decentre", "mm", ("element_decentre_x", "element_decentre_y"), 1.0),
     "irregularity_fringes": ("irregularity", "fringes", ("irregularity_0", "irregularity_45"), 1.0),
 }
+# Kinds of radius tolerances, in descending order of precedence.
 RADII = ("radius_percent", "radius_mm", "radius_fringes")
 # Largest limits; beyond them the lens would be a different one.
-MOST = {"radius_percent": 50.0, "abbe_percent": 50.0, "index": 0.2}
-TILTS_MOST_ARCMIN = 600.0
+MAX_LIMITS = {"radius_percent": 50.0, "abbe_percent": 50.0, "index": 0.2}
+MAX_TILT_ARCMIN = 600.0
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,7 @@ class Tolerance:
 
     @property
     def errors(self) -> list[tuple[str, int, int]]:
+        """(name, first surface, last surface) of the core's errors."""
         return [(name, self.first, self.last) for name in KINDS[self.kind][2]]
 
     @property
@@ -74,6 +77,7 @@ class Tolerance:
 
     @property
     def is_directed(self) -> bool:
+        """True if the error has a direction: two components."""
         return len(KINDS[self.kind][2]) == 2
 
 
@@ -126,16 +130,18 @@ class Tolerances:
             if field.name == "distribution" or limits is None:
                 continue
             if isinstance(limits, Mapping):
-                given = {_key(key): limit for key, limit in limits.items()}
-                for (first, last), limit in given.items():
-                    _check_place(lens, field.name, first, last)
+                by_surfaces = {_key(key): limit for key, limit in limits.items()}
+                for (first, last), limit in by_surfaces.items():
+                    _check_surfaces(lens, field.name, first, last)
                     _check_limit(field.name, limit, f" of surface {first + 1}")
             else:
                 _check_limit(field.name, limits, "")
-                given = dict.fromkeys(self._surfaces(lens, field.name), limits)
-            found += [Tolerance(field.name, *surfaces, float(limit)) for surfaces, limit in given.items() if limit > 0]
+                by_surfaces = dict.fromkeys(self._surfaces(lens, field.name), limits)
+            found += [
+                Tolerance(field.name, *surfaces, float(limit)) for surfaces, limit in by_surfaces.items() if limit > 0
+            ]
         if not found:
-            raise InputError("there is no tolerance; at least one must be above 0")
+            raise InputError("at least one tolerance must be above 0")
         return found
 
     def _surfaces(self, lens: Lens, kind: str) -> Iterator[tuple[int, int]]:
@@ -166,57 +172,61 @@ class Tolerances:
 
 
 def check_distribution(name: str) -> None:
+    """Raises InputError for an unknown distribution."""
     if name not in ("uniform", "normal"):
         raise InputError(f'unknown distribution "{name!s:.40}"; expected uniform or normal')
 
 
 def errors_of(tolerances: list[Tolerance]) -> list[tuple[str, int, int]]:
+    """(name, first surface, last surface) of all errors of the tolerances, in order."""
     return [error for tolerance in tolerances for error in tolerance.errors]
 
 
 def drawn(tolerances: list[Tolerance], distribution: str, copies: int, seed: int) -> NDArray[np.float64]:
-    """Draws the errors, (copies, errors). The first copies do not depend on the number of copies."""
+    """Draws the errors, (copies, errors), in the core's units. The first copies do not depend on their number."""
     from scipy.special import ndtr, ndtri  # slow to load
 
     count = sum(len(t.errors) for t in tolerances)
-    shares = np.random.Generator(np.random.PCG64(seed)).random((copies, count))
-    sizes = np.empty_like(shares)
+    uniform = np.random.Generator(np.random.PCG64(seed)).random((copies, count))
+    sizes = np.empty_like(uniform)
     column = 0
     for tolerance in tolerances:
-        most = tolerance.limit * tolerance.scale
-        share = shares[:, column]
+        limit = tolerance.limit * tolerance.scale
+        u = uniform[:, column]
         if not tolerance.is_directed:
             if distribution == "uniform":
-                sizes[:, column] = most * (2 * share - 1)
+                sizes[:, column] = limit * (2 * u - 1)
             else:
-                sizes[:, column] = 0.5 * most * ndtri(ndtr(-2) + share * (ndtr(2) - ndtr(-2)))
+                sizes[:, column] = 0.5 * limit * ndtri(ndtr(-2) + u * (ndtr(2) - ndtr(-2)))
             column += 1
             continue
         if distribution == "uniform":
-            radius = most * np.sqrt(share)
+            radius = limit * np.sqrt(u)
         else:
-            radius = 0.5 * most * np.sqrt(-2 * np.log1p(-share * (1 - math.exp(-2))))
-        azimuth = 2 * np.pi * shares[:, column + 1]
+            radius = 0.5 * limit * np.sqrt(-2 * np.log1p(-u * (1 - math.exp(-2))))
+        azimuth = 2 * np.pi * uniform[:, column + 1]
         sizes[:, column], sizes[:, column + 1] = radius * np.cos(azimuth), radius * np.sin(azimuth)
         column += 2
     return sizes
 
 
 def _key(key: int | tuple[int, int]) -> tuple[int, int]:
+    """(first, last) surface of a key of the limits. Raises InputError."""
     if isinstance(key, tuple):
         if len(key) != 2:
-            raise InputError(f"{key!r:.40} is no element; expected the numbers of its first and last surface")
+            raise InputError(f"an element must be the indices of its first and last surface; found {key!r:.40}")
         return key
     return key, key
 
 
-def _check_place(lens: Lens, kind: str, first: int, last: int) -> None:
+def _check_surfaces(lens: Lens, kind: str, first: int, last: int) -> None:
+    """Raises InputError if a tolerance does not apply to these surfaces."""
     if kind.startswith("element"):
         check_element(lens, first, last)
         return
     check_surface(lens, first)
     if first != last:
-        raise InputError(f"{kind}: ({first}, {last}) is no surface; expected a number from 0")
+        raise InputError(f"{kind}: expected a surface, as an index from 0; found ({first}, {last})")
     if why := _why_not(lens, kind, first):
         raise InputError(f"{kind}: {why}")
 
@@ -228,9 +238,9 @@ def _check_limit(kind: str, limit: float, where: str) -> None:
         value = math.nan
     if not (value >= 0 and math.isfinite(value)):
         raise InputError(f"{kind}{where} is {limit!r:.40}; expected a number of 0 or more")
-    most = TILTS_MOST_ARCMIN if kind.endswith("arcmin") else MOST.get(kind, math.inf)
-    if value > most:
-        raise InputError(f"{kind}{where} is {value:g}; expected at most {most:g}")
+    largest = MAX_TILT_ARCMIN if kind.endswith("arcmin") else MAX_LIMITS.get(kind, math.inf)
+    if value > largest:
+        raise InputError(f"{kind}{where} is {value:g}; expected at most {largest:g}")
 
 
 def _is_plane(lens: Lens, surface: int) -> bool:
@@ -243,17 +253,17 @@ def _why_not(lens: Lens, kind: str, surface: int) -> str:
     s = lens.surfaces[surface]
     if kind == "thickness_mm":
         if surface == len(lens.surfaces) - 1:
-            return f"surface {surface + 1} is the last; the film follows it, which is refocused"
+            return f"surface {surface + 1} is the last; the distance to the film is adjusted by refocusing"
         return ""
     if s.type in ("stop", "aperture"):
-        return f"surface {surface + 1} is a {s.type}, which bends no light"
+        return f"surface {surface + 1} is a {s.type}, which does not refract"
     if kind in ("radius_mm", "radius_percent") and s.curvature_per_mm == 0:
         return f"surface {surface + 1} is a plane and has no radius; use radius_fringes"
     if kind in ("index", "abbe_percent"):
         if not has_glass_behind(lens, surface):
             return f"there is no glass behind surface {surface + 1}"
         if kind == "abbe_percent" and not s.material.index(486.1327) > s.material.index(656.2725):
-            return f"the dispersion of the glass behind surface {surface + 1} is not known"
+            return f"the dispersion of the glass behind surface {surface + 1} is unknown"
     if kind == "wedge_arcmin" and (surface == 0 or not has_glass_behind(lens, surface - 1)):
         return f"there is no glass in front of surface {surface + 1}, and no wedge; use surface_tilt_arcmin"
     return ""

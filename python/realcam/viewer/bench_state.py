@@ -13,7 +13,7 @@ from .pose import Pose
 
 
 def state_of(controls: CameraControls, switches: dict[str, str]) -> dict[str, Any]:
-    """Returns the state as JSON values. The lens is stored as the text of its file."""
+    """Returns the state as JSON values. The lens is stored as the text of its file. switches: Switches.states."""
     content, _ = controls.lens._file_content("lens.toml")
     return {
         "name": controls.lens.name or "lens",
@@ -39,13 +39,13 @@ def restored(before: CameraControls, state: dict[str, Any]) -> CameraControls:
     lens, _ = lens_from(f"{name}.toml", _text(state, "lens").encode(errors="replace"))
     width_mm, height_mm, columns, rows = _numbers(state, "film", 4)
     if not (columns.is_integer() and rows.is_integer()):
-        raise InputError("the state that the page has kept has a film of no whole number of pixels")
+        raise InputError("the page's stored state has a film whose size in pixels is not an integer")
     right_mm, up_mm = _numbers(state, "film_shift_mm", 2) if "film_shift_mm" in state else (0.0, 0.0)
-    x, y, z, u, v, w, *up = _numbers(state, "pose", 9)
+    pose = _numbers(state, "pose", 9)
     controls = replace(
         before.with_lens(lens),
         film=Film(width_mm, height_mm, (int(columns), int(rows)), shift_mm=(right_mm, up_mm)),
-        pose=Pose((x, y, z), (u, v, w), (up[0], up[1], up[2])),
+        pose=Pose((pose[0], pose[1], pose[2]), (pose[3], pose[4], pose[5]), (pose[6], pose[7], pose[8])),
         f_number=None if state.get("f_number") is None else _number(state, "f_number"),
         focus_m=math.inf if state.get("focus_m") is None else _number(state, "focus_m"),
         model=_text(state, "model"),
@@ -63,19 +63,19 @@ def restored(before: CameraControls, state: dict[str, Any]) -> CameraControls:
 def _text(state: dict[str, Any], key: str) -> str:
     value = state.get(key)
     if not isinstance(value, str):
-        raise InputError(f'the state that the page has kept has no text "{key}"')
+        raise InputError(f'the page\'s stored state has no text "{key}"')
     return value
 
 
 def _number(state: dict[str, Any], key: str) -> float:
     value = state.get(key)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise InputError(f'the state that the page has kept has no number "{key}"')
+        raise InputError(f'the page\'s stored state has no number "{key}"')
     return float(value)
 
 
 def _numbers(state: dict[str, Any], key: str, count: int) -> list[float]:
     values = state.get(key)
     if not isinstance(values, list) or len(values) != count:
-        raise InputError(f'the state that the page has kept has no {count} numbers "{key}"')
+        raise InputError(f'the page\'s stored state has no list "{key}" of {count} numbers')
     return [_number({key: value}, key) for value in values]

@@ -23,7 +23,7 @@ class Mount(NamedTuple):
 
 
 def of_width(film: Film, width: int) -> Film:
-    """Returns the film with `width` pixels across; their number upwards follows from its size."""
+    """Returns the film with a picture `width` pixels wide, whose height follows from the film's size."""
     return film.replace(resolution=(width, max(1, round(width * film.height_mm / film.width_mm))))
 
 
@@ -33,7 +33,8 @@ class CameraControls:
 
     lens: the lens at its file's focus and wide open; edits change it. zoom: one of its zoom positions, or a focal
     length in mm between them; None: it does not zoom. f_number: None: wide open; a value below the lens's smallest also
-    means wide open, so that the setting is retained while lenses change.
+    means wide open, so that the setting is retained while lenses change. focus_m: distance in focus, from the film.
+    compensation_ev: exposure compensation in stops, positive for brighter. model: a camera model, as for Camera.
     """
 
     lens: Lens
@@ -45,7 +46,7 @@ class CameraControls:
     exposure_time_s: float = 0.008
     iso: float = 100.0
     compensation_ev: float = 0.0
-    is_automatic: bool = False  #: the exposure time follows the light
+    is_automatic: bool = False  #: automatic exposure sets the exposure time
     shutter_opens_s: float = 0.0
     readout_time_s: float = 0.0
     model: str = "full"
@@ -58,8 +59,8 @@ class CameraControls:
         position = lens.zoom_position
         zoom: str | float | None = position
         if position is not None:
-            at_position_mm = lens.zoom_focal_lengths_mm[lens.zoom_positions.index(position)]
-            if not math.isclose(data.effective_focal_length_mm, at_position_mm, rel_tol=1e-5):
+            position_mm = lens.zoom_focal_lengths_mm[lens.zoom_positions.index(position)]
+            if not math.isclose(data.effective_focal_length_mm, position_mm, rel_tol=1e-5):
                 zoom = data.effective_focal_length_mm
             lens = lens.zoomed(position)
         return cls(
@@ -126,11 +127,10 @@ class CameraControls:
     def zoomed(self, focal_length_mm: float) -> CameraControls:
         """Returns the controls with the zoom at a focal length; at the focal length of a position, with that
         position."""
-        known = self.lens.zoom_focal_lengths_mm
-        at_position = focal_length_mm in known
-        return replace(
-            self, zoom=self.lens.zoom_positions[known.index(focal_length_mm)] if at_position else focal_length_mm
-        )
+        position_mm = self.lens.zoom_focal_lengths_mm
+        if focal_length_mm in position_mm:
+            return replace(self, zoom=self.lens.zoom_positions[position_mm.index(focal_length_mm)])
+        return replace(self, zoom=focal_length_mm)
 
     @property
     def apertures(self) -> Ring:
@@ -143,15 +143,15 @@ class CameraControls:
         return self.pose.distance_m * self.film.height_mm / abs(self.body.first_order().effective_focal_length_mm)
 
     def focusing_shift_mm(self, surface: int) -> float:
-        """Change of the thickness behind a surface by focusing, mm."""
-        surfaces = self.set_lens.surfaces, self.body.surfaces
-        if not 0 <= surface < len(self.body.surfaces):
+        """Change of the thickness behind a surface by focusing, mm; 0 if there is no such surface."""
+        focused, unfocused = self.set_lens.surfaces, self.body.surfaces
+        if not 0 <= surface < len(unfocused):
             return 0.0
-        return surfaces[0][surface].thickness_mm - surfaces[1][surface].thickness_mm
+        return focused[surface].thickness_mm - unfocused[surface].thickness_mm
 
     def turned(self, ring: str, steps: int) -> CameraControls:
-        """Turns "aperture" (stops down), "shutter" (longer) or "iso" by thirds of a stop, or "zoom" (longer focal
-        length) by a thirtieth of its ring. Raises InputError.
+        """Returns the controls with a ring turned by steps: "aperture" (stops down), "shutter" (longer) or "iso" by
+        thirds of a stop, or "zoom" (longer focal length) by a thirtieth of its ring. Raises InputError.
         """
         if ring == "aperture":
             widest = self.apertures.values[0]
@@ -163,14 +163,15 @@ class CameraControls:
         if ring == "zoom":
             zooms = self.zooms
             return self.zoomed(zooms.turned(self.focal_length_mm, _ZOOM_KEY_STEPS * steps)) if zooms else self
-        raise InputError(f'there is no ring "{ring:.40}"')
+        raise InputError(f'unknown ring "{ring:.40}"; expected aperture, shutter, iso or zoom')
 
     @property
     def mount(self) -> Mount:
+        """Lens, film and zoom: the settings that undo and redo restore."""
         return Mount(self.lens, self.film, self.zoom)
 
     def with_mount(self, mount: Mount) -> CameraControls:
-        """Returns the controls with another lens and its film; the number of pixels across is retained."""
+        """Returns the controls with another lens and its film; the picture's width in pixels is retained."""
         film = of_width(mount.film, self.film.resolution[0])
         return replace(self, lens=mount.lens, zoom=mount.zoom, film=film)
 

@@ -7,56 +7,70 @@ from dataclasses import dataclass, field, replace
 
 from .._core import Plan, effects
 
+#: Effects with a switch: those that are not always simulated.
 EFFECTS = tuple(effect.name for effect in effects() if not effect.is_on)
-_WITHOUT_SURFACES = {effect.name for effect in effects() if not effect.needs_full_lens}
+#: Effects that any camera model can simulate; the others need the surfaces of the lens.
+_EFFECTS_OF_ANY_MODEL = {effect.name for effect in effects() if not effect.needs_full_lens}
 
 
 @dataclass
 class Switches:
-    """Switches of the effects: each "auto", "on" or "off"."""
+    """Switches of the simulated effects.
 
-    of: dict[str, str] = field(default_factory=lambda: dict.fromkeys(EFFECTS, "auto"))
-    words: dict[str, str] = field(default_factory=dict)  #: words of effects with a number in the shot, "ghosts=1e-8"
-    others: tuple[str, ...] = ()  #: the shot's words of effects without a switch, "-motion_blur"
+    Effect specifications are the strings of a shot file's key `effects`: "ghosts", "ghosts=1e-8" with a parameter,
+    "-ghosts" for an effect that is off, and "auto" for all others.
+    """
+
+    #: "auto" (simulated if the planner keeps it), "on" or "off", for each of EFFECTS.
+    states: dict[str, str] = field(default_factory=lambda: dict.fromkeys(EFFECTS, "auto"))
+    #: Specifications in the shot of effects that have a parameter, by effect: "ghosts=1e-8".
+    specs_with_parameter: dict[str, str] = field(default_factory=dict)
+    #: Specifications in the shot of effects without a switch: "-motion_blur".
+    specs_without_switch: tuple[str, ...] = ()
 
     @classmethod
-    def of_shot(cls, words: Iterable[str]) -> Switches:
-        """Parses the effects of a shot file: without "auto", effects that it does not name are off."""
-        words = tuple(words)
-        switches = cls(dict.fromkeys(EFFECTS, "auto" if "auto" in words else "off"))
+    def from_shot(cls, specs: Iterable[str]) -> Switches:
+        """Parses the effect specifications of a shot: without "auto", effects that it does not name are off."""
+        specs = tuple(specs)
+        switches = cls(dict.fromkeys(EFFECTS, "auto" if "auto" in specs else "off"))
         others = []
-        for word in words:
-            name = word.removeprefix("-").partition("=")[0]
+        for spec in specs:
+            name = spec.removeprefix("-").partition("=")[0]
             if name in EFFECTS:
-                switches.of[name] = "off" if word.startswith("-") else "on"
-                if "=" in word:
-                    switches.words[name] = word
-            elif word != "auto":
-                others.append(word)
-        switches.others = tuple(others)
+                switches.states[name] = "off" if spec.startswith("-") else "on"
+                if "=" in spec:
+                    switches.specs_with_parameter[name] = spec
+            elif spec != "auto":
+                others.append(spec)
+        switches.specs_without_switch = tuple(others)
         return switches
 
-    def named(self, plan: Plan | None) -> tuple[str, ...]:
-        """Effects to simulate: those that are on, those on "auto" that the plan keeps, and those of the shot without a
-        switch."""
-        kept = {effect.partition("=")[0]: effect for effect in plan.effects} if plan else {}
-        chosen = {name: self.words.get(name, name) for name, state in self.of.items() if state == "on"}
+    def effects_to_simulate(self, plan: Plan | None) -> tuple[str, ...]:
+        """Specifications of the effects to simulate: those that are on, those on "auto" that the plan keeps, and those
+        of the shot without a switch. plan: None: no effect on "auto" is simulated."""
+        planned = {effect.partition("=")[0]: effect for effect in plan.effects} if plan else {}
+        on = self._specs_that_are_on()
         switched = [
-            chosen.get(name) or kept[name]
-            for name, state in self.of.items()
-            if name in chosen or (state == "auto" and name in kept)
+            on.get(name) or planned[name]
+            for name, state in self.states.items()
+            if name in on or (state == "auto" and name in planned)
         ]
-        return (*switched, *self.others)
+        return (*switched, *self.specs_without_switch)
 
-    def of_model(self, model: str) -> Switches:
+    def restricted_to_model(self, model: str) -> Switches:
         """Returns the switches for a camera model: without lens surfaces, effects that need them are off."""
         if model == "full":
             return self
-        return replace(self, of={name: self.of[name] if name in _WITHOUT_SURFACES else "off" for name in self.of})
+        return replace(
+            self,
+            states={name: state if name in _EFFECTS_OF_ANY_MODEL else "off" for name, state in self.states.items()},
+        )
 
-    def as_words(self) -> list[str]:
-        """Returns the effects in the notation of shot files."""
-        automatic = ["auto"] if "auto" in self.of.values() else []
-        on = [self.words.get(name, name) for name, state in self.of.items() if state == "on"]
-        off = [f"-{name}" for name, state in self.of.items() if state == "off" and automatic]
-        return [*automatic, *on, *off, *self.others]
+    def as_specs(self) -> list[str]:
+        """Returns the effect specifications for a shot file."""
+        automatic = ["auto"] if "auto" in self.states.values() else []
+        off = [f"-{name}" for name, state in self.states.items() if state == "off" and automatic]
+        return [*automatic, *self._specs_that_are_on().values(), *off, *self.specs_without_switch]
+
+    def _specs_that_are_on(self) -> dict[str, str]:
+        return {name: self.specs_with_parameter.get(name, name) for name, state in self.states.items() if state == "on"}

@@ -28,15 +28,16 @@ class FollowUps:
         self._planning = NewestTask("realcam-planning", quiet_s=0.4)
         self._measuring_levels = NewestTask("realcam-levels")
         self._measuring_depth = NewestTask("realcam-depth-of-field", quiet_s=0.3)
-        self._keeping = NewestTask("realcam-state", quiet_s=0.5)
+        self._storing = NewestTask("realcam-state", quiet_s=0.5)
 
     def close(self) -> None:
         """Ends all threads after their current tasks, without waiting for them."""
-        quick = self._drawing, self._tracing, self._keeping
+        quick = self._drawing, self._tracing, self._storing
         for task in (*quick, self._planning, self._measuring_levels, self._measuring_depth):
             task.close()
 
     def draw(self, lens: Lens, plane: str) -> None:
+        """Draws the section of a lens in a plane, "yz" or "xz"."""
         self._drawing.submit(lambda: self._listeners.lens(lens_view(lens, plane)))
 
     def trace(self, lens: Lens, heights_mm: Sequence[float], plane: str) -> None:
@@ -60,17 +61,18 @@ class FollowUps:
         """Renders the shot at all levels of simulation with few pixels, and reports their costs (docs/accuracy.md)."""
 
         def measure() -> None:
-            self._listeners.rungs([], "measuring ...")
-            self._listeners.rungs(*measured_levels(self._shot.scene, camera, self._device))
+            self._listeners.levels([], "measuring ...")
+            self._listeners.levels(*measured_levels(self._shot.scene, camera, self._device))
 
         self._measuring_levels.submit(measure)
 
-    def keep(self, controls: CameraControls, switches: dict[str, str]) -> None:
+    def store_state(self, controls: CameraControls, switches: dict[str, str]) -> None:
         """Sends the state to the page, which stores it for a reload."""
-        self._keeping.submit(lambda: self._listeners.state(state_of(controls, switches)))
+        self._storing.submit(lambda: self._listeners.state(state_of(controls, switches)))
 
-    def plan(self, camera: Camera, effects: list[str], take: Callable[[Plan | None, str], None]) -> None:
-        """Plans effects, given in the notation of shot files. `take` receives the plan, or None and the reason."""
+    def plan(self, camera: Camera, effects: list[str], on_plan: Callable[[Plan | None, str], None]) -> None:
+        """Plans effects, given in the notation of shot files. on_plan: receives the plan and "", or None and the reason
+        why there is no plan."""
 
         def plan() -> None:
             try:
@@ -82,12 +84,12 @@ class FollowUps:
                     effects=effects,
                 )
             except RealcamError as error:
-                take(None, str(error))
+                on_plan(None, str(error))
             else:
-                take(found, "")
+                on_plan(found, "")
 
         self._planning.submit(plan)
 
-    def plan_nothing(self, take: Callable[[Plan | None, str], None]) -> None:
-        """Replaces a pending plan: `take` receives None."""
-        self._planning.submit(lambda: take(None, ""))
+    def cancel_plan(self, on_plan: Callable[[Plan | None, str], None]) -> None:
+        """Discards a pending request for a plan. on_plan: receives None and ""."""
+        self._planning.submit(lambda: on_plan(None, ""))

@@ -25,17 +25,20 @@ from .lens_view import drawn_heights_mm
 from .listeners import Listeners, Problem
 from .pictures.light_meter import middle_grey_lx_s
 from .pictures.picture_loop import PictureLoop
-from .pictures.picture_request import MOST_SPP, Frame, PictureRequest
+from .pictures.picture_request import MAX_SPP, Frame, PictureRequest
 from .pictures.preview_denoiser import why_missing
 from .ring_scales import Ring
 
-_BOUNCES_UNPLANNED = 8  # until there is a plan; enough for objects of glass not to be black
+_BOUNCES_UNPLANNED = 8  # path length until there is a plan; enough that objects of glass are not black
 
 
 class LensBench:
     """A shot's scene and a camera that the user changes. Functions may be called from one thread at a time.
 
-    A change without a valid camera has no effect and is reported as a Problem, which ends with the next valid change.
+    Functions that change the camera return true on success. A change that leads to an invalid camera has no effect, and
+    is reported as a Problem, which ends with the next valid change. Picture coordinates u, v: 0 to 1, from the upper
+    left corner. device: for rendering, as for realcam.render. noise_codes: noise to which the picture is refined, in
+    8-bit codes.
     """
 
     def __init__(self, shot: Shot, *, device: str = "auto", noise_codes: float = 1.0) -> None:
@@ -43,7 +46,7 @@ class LensBench:
         self.listeners = Listeners()
         self.controls = CameraControls.of(shot.camera)
         self.history = History(self.controls.mount)
-        self.switches = Switches.of_shot(shot.settings.effects)
+        self.switches = Switches.from_shot(shot.settings.effects)
         self.plan: Plan | None = None
         self.problem: Problem | None = None
         self.noise_codes = noise_codes
@@ -55,7 +58,7 @@ class LensBench:
         self.comparison = Comparison()
         self._lock = threading.Lock()  # guards controls, which the picture's thread also changes
         self._frame: Frame | None = None
-        self._loops = {"a": self._new_loop("a")}
+        self._loops = {"a": self._new_loop("a")}  # by slot: "a" is the picture, "b" the one to compare with
         self._follow_ups = FollowUps(shot, device, self.listeners)
 
     def close(self) -> None:
@@ -69,18 +72,19 @@ class LensBench:
 
     def show(self) -> None:
         """Renders and draws the current state, for a page that has just been opened."""
-        self._photograph()
+        self._request_pictures()
         self._draw()
-        self._ask_for_plan()
+        self._request_plan()
         self.listeners.controls()
         self.listeners.problem(self.problem)
 
     def change(self, **changes: Any) -> bool:
-        """Sets fields of CameraControls. Returns true if the camera is valid."""
-        return self._take(lambda: replace(self.controls, **changes), of="picture")
+        """Sets fields of CameraControls."""
+        return self._apply(lambda: replace(self.controls, **changes), view="picture")
 
     @property
     def apertures(self) -> Ring:
+        """The aperture ring of the lens."""
         return self.controls.apertures
 
     def turn(self, ring: str, steps: int) -> bool:
@@ -88,11 +92,11 @@ class LensBench:
         turned = self.controls.turned(ring, steps)
         if ring == "zoom":
             return turned.zoom != self.controls.zoom and self.set_zoom(turned.zoom)
-        return self._take(lambda: turned, of="picture")
+        return self._apply(lambda: turned, view="picture")
 
     def set_zoom(self, zoom: str | float | None, gesture: object = None) -> bool:
         """Sets the zoom (see CameraControls); can be undone. gesture: equal for all steps of one drag."""
-        if not self._take(lambda: replace(self.controls, zoom=zoom).focused_within_reach(), of="picture"):
+        if not self._apply(lambda: replace(self.controls, zoom=zoom).focused_within_reach(), view="picture"):
             return False
         self._push(gesture)
         return True
@@ -113,30 +117,29 @@ class LensBench:
     def focus_at(self, u: float, v: float) -> bool:
         """Focuses on the object at u, v of the picture."""
         distance = self._loops["a"].point(u, v).result().distance_m
-        return self._take(lambda: replace(self.controls, focus_m=distance).focused_within_reach(), of="picture")
+        return self._apply(lambda: replace(self.controls, focus_m=distance).focused_within_reach(), view="picture")
 
     def meter_at(self, u: float, v: float) -> bool:
         """Sets the exposure time so that the spot around u, v becomes middle grey."""
         illuminance = self._loops["a"].point(u, v).result().illuminance_lx
         if not illuminance > 0:
-            self.report(Problem("there is no light where the meter looks", of="picture"))
+            self.report(Problem("no light reaches the metered point", view="picture"))
             return False
-        now = self.controls
-        wanted = middle_grey_lx_s(now.iso, now.compensation_ev)
-        return self.change(exposure_time_s=wanted / illuminance, is_automatic=False)
+        exposure_lx_s = middle_grey_lx_s(self.controls.iso, self.controls.compensation_ev)
+        return self.change(exposure_time_s=exposure_lx_s / illuminance, is_automatic=False)
 
     def set_resolution(self, width: int) -> bool:
-        """Sets the number of pixels across; their number upwards follows from the film."""
-        return self._take(lambda: replace(self.controls, film=of_width(self.controls.film, width)), of="picture")
+        """Sets the width of the picture in pixels; its height follows from the film's size."""
+        return self._apply(lambda: replace(self.controls, film=of_width(self.controls.film, width)), view="picture")
 
     def set_film_mm(self, width_mm: float, height_mm: float) -> bool:
-        """Sets the film's size, with the same number of pixels across; can be undone."""
+        """Sets the film's size; the picture keeps its width in pixels. Can be undone."""
 
         def changed() -> CameraControls:
             film = self.controls.film.replace(width_mm=width_mm, height_mm=height_mm)
             return replace(self.controls, film=of_width(film, film.resolution[0]))
 
-        if not self._take(changed, of="picture"):
+        if not self._apply(changed, view="picture"):
             return False
         self._push()
         return True
@@ -144,7 +147,7 @@ class LensBench:
     def restore(self, state: dict[str, Any]) -> bool:
         """Restores the state of an earlier bench, stored by the page; see bench_state."""
         switches = state.get("switches")
-        if not self._take(lambda: restored(self.controls, state)):
+        if not self._apply(lambda: restored(self.controls, state)):
             return False
         self.history = History(self.controls.mount)
         for effect, setting in (switches if isinstance(switches, dict) else {}).items():
@@ -157,14 +160,15 @@ class LensBench:
     def set_lens(self, lens: Lens) -> bool:
         """Mounts another lens with its own film."""
         mount = Mount(lens, Film.for_lens(lens), self.controls.with_lens(lens).zoom)
-        if not self._take(lambda: self._fitted(mount)):
+        if not self._apply(lambda: self._fitted(mount)):
             return False
         self._push()
         return True
 
     def edit(self, edited: Callable[[Lens], Lens], gesture: object = None) -> bool:
-        """Changes the lens; see lens_edits. gesture: equal for all steps of one drag."""
-        if not self._take(lambda: self.controls.with_lens(edited(self.controls.lens)).focused_within_reach()):
+        """Replaces the lens by the result of `edited` (see lens_edits); can be undone. gesture: equal for all steps of
+        one drag."""
+        if not self._apply(lambda: self.controls.with_lens(edited(self.controls.lens)).focused_within_reach()):
             return False
         self._push(gesture)
         return True
@@ -174,37 +178,43 @@ class LensBench:
         a thickness is converted to the unfocused one."""
 
         def edited(lens: Lens) -> Lens:
-            wanted = value
+            unfocused = value
             if field == "thickness_mm" and isinstance(value, int | float):
-                wanted = value - self.controls.focusing_shift_mm(surface)
-            return with_value(lens, surface, field, wanted)
+                unfocused = value - self.controls.focusing_shift_mm(surface)
+            return with_value(lens, surface, field, unfocused)
 
         return self.edit(edited, gesture)
 
     def another_copy(self, grade: str) -> bool:
-        """Replaces the lens by a random copy with the tolerances of a grade; a copy by a new copy of its nominal
-        lens."""
+        """Replaces the lens by a random copy with the tolerances of a grade (see realcam.Tolerances); can be undone.
+
+        If the lens is such a copy, it is replaced by another copy of its nominal lens.
+        """
         lens = self.controls.lens
-        drawn = next((drawn for copy, drawn in self._copies if copy == lens), lens)
-        if not self.edit(lambda _: random_copy(drawn, grade)):
+        nominal = next((nominal for copy, nominal in self._copies if copy == lens), lens)
+        if not self.edit(lambda _: random_copy(nominal, grade)):
             return False
-        self._copies.append((self.controls.lens, drawn))
+        self._copies.append((self.controls.lens, nominal))
         return True
 
     def undo(self) -> bool:
+        """Undoes the last change of lens, film or zoom."""
         return self.history.can_undo and self._step(self.history.undo, self.history.redo)
 
     def redo(self) -> bool:
+        """Redoes the last change that was undone."""
         return self.history.can_redo and self._step(self.history.redo, self.history.undo)
 
-    def _step(self, there: Callable[[], Mount], back: Callable[[], Mount]) -> bool:
-        mount = there()
-        if self._take(lambda: self._fitted(mount)):
+    def _step(self, step: Callable[[], Mount], inverse: Callable[[], Mount]) -> bool:
+        """Moves in the history by `step`; back by `inverse` if the camera would be invalid."""
+        mount = step()
+        if self._apply(lambda: self._fitted(mount)):
             return True
-        back()
+        inverse()
         return False
 
     def _push(self, gesture: object = None) -> None:
+        """Adds the current lens, film and zoom to the history."""
         self.history.push(self.controls.mount, gesture)
         self.listeners.controls()
 
@@ -224,36 +234,39 @@ class LensBench:
     def cut(self, plane: str) -> None:
         """Draws the section of the lens in the plane "yz" or "xz". Raises InputError for another plane."""
         if plane not in PLANES:
-            raise InputError(f'there is no plane "{plane:.10}"')
+            raise InputError(f'unknown plane "{plane:.10}"; expected {" or ".join(PLANES)}')
         self._plane = plane
         self._draw()
 
     # Effects and comparison.
 
     def switch(self, effect: str, state: str) -> None:
-        """effect: one of EFFECTS. state: "auto", "on" or "off". Raises InputError."""
+        """Sets the switch of an effect. effect: one of EFFECTS. state: "auto", "on" or "off". Raises InputError."""
         if effect not in EFFECTS or state not in ("auto", "on", "off"):
-            raise InputError(f'there is no switch "{effect:.40}" that could be "{state:.10}"')
-        self.switches.of[effect] = state
-        self._keep()
-        self._photograph()
-        self._ask_for_plan()
+            raise InputError(f'the switch "{effect:.40}" cannot be set to "{state:.10}"')
+        self.switches.states[effect] = state
+        self._store_state()
+        self._request_pictures()
+        self._request_plan()
 
     def set_noise(self, codes: float) -> None:
         """Sets the noise to which the picture is refined, in 8-bit codes."""
         self.noise_codes = codes
-        self._photograph()
+        self._request_pictures()
 
     def set_denoising(self, is_on: bool) -> None:
         """Switches denoising of pictures that are still being refined. Raises InputError without a denoiser."""
         if is_on and self.why_no_denoiser:
             raise InputError(self.why_no_denoiser)
         self.denoises = is_on
-        self._photograph()
+        self._request_pictures()
 
-    def compare(self, with_what: str, lens: Lens | None = None) -> None:
-        """Shows a second picture; see Comparison. Raises InputError if its camera is invalid."""
-        comparison = Comparison.of(with_what, self.controls, lens)
+    def compare(self, kind: str, lens: Lens | None = None) -> None:
+        """Shows a second picture beside the first.
+
+        kind: one of COMPARISONS. lens: the lens of the kind "another lens". Raises InputError if its camera is invalid.
+        """
+        comparison = Comparison.of(kind, self.controls, lens)
         other = comparison.beside(self.controls)
         if other is not None:
             other.camera  # noqa: B018
@@ -264,10 +277,10 @@ class LensBench:
                 loop.close()
         elif "b" not in self._loops:
             self._loops["b"] = self._new_loop("b")
-        self._photograph()
+        self._request_pictures()
         self.listeners.controls()
 
-    def measure_rungs(self) -> None:
+    def measure_levels(self) -> None:
         """Renders the shot at all levels of simulation with few pixels, and reports their costs (docs/accuracy.md)."""
         self._follow_ups.measure_levels(self.controls.camera)
 
@@ -278,8 +291,8 @@ class LensBench:
         return self._loops[slot].image().result()
 
     @property
-    def asked(self) -> dict[str, int]:
-        """Serials of the pictures last requested, by slot. On the thread of the user's actions."""
+    def requested_serials(self) -> dict[str, int]:
+        """Serial numbers of the pictures last requested, by slot. Must be read on the thread of the user's actions."""
         return {slot: loop.serial for slot, loop in self._loops.items()}
 
     @property
@@ -293,11 +306,11 @@ class LensBench:
         """Progress of the refinement, as text."""
         frame = self._frame
         if frame is None or frame.serial < self._loops["a"].serial:
-            return "it has just begun"
+            return "no samples yet"
         samples = f"{counted(frame.samples, 'sample')} per pixel"
         if frame.noise_codes is None:
             return samples
-        return f"{samples}, noise {frame.noise_codes:.1f} of 255 grey levels with a goal of {self.noise_codes:g}"
+        return f"{samples}, noise {frame.noise_codes:.1f} of 255 grey levels; the goal is {self.noise_codes:g}"
 
     @property
     def time_left(self) -> str:
@@ -311,28 +324,31 @@ class LensBench:
         final = frame.final_noise_codes
         if final is None or final < 1.1 * self.noise_codes:  # within the error of the forecast
             return text
-        return f"{text}, to about {final:.2g} grey levels: {counted(MOST_SPP, 'sample')} per pixel are the most here"
+        limit = counted(MAX_SPP, "sample")
+        return f"{text}, until a noise of about {final:.2g} grey levels at the limit of {limit} per pixel"
 
     def show_again(self) -> None:
-        """Sends the current picture again."""
-        self._photograph()
+        """Sends the current pictures again, encoded with the current JPEG quality."""
+        self._request_pictures()
 
     def set_jpeg_quality(self, quality: int) -> None:
+        """Sets the JPEG quality of later frames, 0 to 100."""
         for loop in self._loops.values():
             loop.jpeg_quality = quality
 
     def _new_loop(self, slot: str) -> PictureLoop:
         return PictureLoop(
             self.shot.scene,
-            lambda frame: self._take_frame(slot, frame),
-            self._take_failure,
+            lambda frame: self._forward_frame(slot, frame),
+            self._report_error,
             device=self._device,
         )
 
-    def _take_failure(self, serial: int, message: str) -> None:
-        self.report(Problem(message, of="picture"))
+    def _report_error(self, serial: int, message: str) -> None:
+        self.report(Problem(message, view="picture"))
 
-    def _take_frame(self, slot: str, frame: Frame) -> None:
+    def _forward_frame(self, slot: str, frame: Frame) -> None:
+        """Forwards a frame to the page, and stores the exposure time of automatic exposure. On a thread of the loop."""
         if slot == "a":
             self._frame = frame
             with self._lock:
@@ -345,8 +361,11 @@ class LensBench:
                 self.listeners.controls()
         self.listeners.frame(slot, frame)
 
-    def _take(self, changed: Callable[[], CameraControls], *, of: str = "lens") -> bool:
-        """Applies a change; without a valid camera it has no effect, and false is returned. of: see Problem."""
+    def _apply(self, changed: Callable[[], CameraControls], *, view: str = "lens") -> bool:
+        """Applies the controls that `changed` returns, and updates pictures, drawings and plan.
+
+        If it raises RealcamError, or the camera is invalid, reports a problem and returns false. view: see Problem.
+        """
         before = self.controls
         try:
             controls = changed()
@@ -354,18 +373,18 @@ class LensBench:
         except RealcamError as error:
             # Messages count surfaces from 1.
             surface = error.surface - 1 if isinstance(error, LensFileError) and error.surface > 0 else None
-            self.report(Problem(str(error), surface, of))
+            self.report(Problem(str(error), surface, view))
             return False
         with self._lock:
             if before.is_automatic and controls.is_automatic:
                 controls = replace(controls, exposure_time_s=self.controls.exposure_time_s)
             self.controls = controls
         self.report(None)
-        self._photograph()
+        self._request_pictures()
         if _drawn(before) != _drawn(controls):
             self._draw()
-        self._ask_for_plan()
-        self._keep()
+        self._request_plan()
+        self._store_state()
         if replace(before, pose=controls.pose) != controls:
             self.listeners.controls()
         return True
@@ -378,7 +397,7 @@ class LensBench:
 
     def _settings(self, switches: Switches) -> RenderSettings:
         """Render settings of a picture: values on "auto" follow the plan, or defaults until there is a plan."""
-        settings = self.shot.settings.with_(effects=switches.named(self.plan))
+        settings = self.shot.settings.with_(effects=switches.effects_to_simulate(self.plan))
         if settings.max_bounces == "auto":
             settings = settings.with_(max_bounces=self.plan.max_bounces if self.plan else _BOUNCES_UNPLANNED)
         return settings
@@ -386,7 +405,7 @@ class LensBench:
     def _request(self, controls: CameraControls) -> PictureRequest:
         return PictureRequest(
             camera=controls.camera,
-            settings=self._settings(self.switches.of_model(controls.model)),
+            settings=self._settings(self.switches.restricted_to_model(controls.model)),
             tone=self.shot.tone,
             is_automatic=controls.is_automatic,
             compensation_ev=controls.compensation_ev,
@@ -394,16 +413,18 @@ class LensBench:
             denoises=self.denoises,
         )
 
-    def _photograph(self) -> None:
+    def _request_pictures(self) -> None:
+        """Requests the picture with the current settings, and the one to compare with."""
         self._loops["a"].submit(self._request(self.controls))
         try:
             other = self.comparison.beside(self.controls)
             if other is not None:
                 self._loops["b"].submit(self._request(other))
         except RealcamError as error:
-            self.report(Problem(f"the picture to compare with: {error}", of="picture"))
+            self.report(Problem(f"comparison: {error}", view="picture"))
 
     def _draw(self) -> None:
+        """Requests the drawing of the lens, its rays and the depth of field."""
         self._follow_ups.draw(self.controls.lens_on_film, self._drawn_plane)
         self._follow_ups.measure_depth_of_field(self.controls.set_lens, self.controls.film)
         self._trace()
@@ -418,22 +439,24 @@ class LensBench:
         """Plane of the drawing; always "yz" for a rotationally symmetric lens, whose meridional planes are equal."""
         return "yz" if self.controls.lens_on_film.is_rotational else self._plane
 
-    def _keep(self) -> None:
-        self._follow_ups.keep(self.controls, dict(self.switches.of))
+    def _store_state(self) -> None:
+        self._follow_ups.store_state(self.controls, dict(self.switches.states))
 
-    def _ask_for_plan(self) -> None:
-        if "auto" in self.switches.of.values() or self.shot.settings.max_bounces == "auto":
-            self._follow_ups.plan(self.controls.camera, self.switches.as_words(), self._take_plan)
+    def _request_plan(self) -> None:
+        """Requests a plan if a setting depends on it; otherwise discards the plan."""
+        if "auto" in self.switches.states.values() or self.shot.settings.max_bounces == "auto":
+            self._follow_ups.plan(self.controls.camera, self.switches.as_specs(), self._apply_plan)
         else:
             self.plan = None
-            self._follow_ups.plan_nothing(self._take_plan)  # sends the state of the switches without a plan
+            self._follow_ups.cancel_plan(self._apply_plan)  # sends the state of the switches without a plan
 
-    def _take_plan(self, plan: Plan | None, note: str) -> None:
+    def _apply_plan(self, plan: Plan | None, note: str) -> None:
+        """Stores and reports a plan, and requests new pictures if their settings change. On the planner's thread."""
         before = self._settings(self.switches)
         self.plan = plan
         self.listeners.plan(plan, note)
         if self._settings(self.switches) != before:
-            self._photograph()
+            self._request_pictures()
 
 
 def _drawn(controls: CameraControls) -> tuple[Any, ...]:

@@ -30,8 +30,8 @@ def with_value(lens: Lens, index: int, field: str, value: Any) -> Lens:
     if field == "thickness_mm":
         if _is_moved_by_zoom(lens, index):
             raise InputError(
-                f"the zoom ring moves what is behind surface {index + 1}: its thickness at each position stands in the "
-                "lens file",
+                f"the zoom ring changes the thickness behind surface {index + 1}; the lens file has its value at each "
+                "position",
             )
         return lens.with_surface(index, thickness_mm=_number(value, "the thickness"))
     if field == "semi_diameter_mm":
@@ -44,7 +44,7 @@ def with_value(lens: Lens, index: int, field: str, value: Any) -> Lens:
         terms = dict(surface.aspheric_coefficients)
         terms[int(field[1:])] = _number(value, "the aspheric coefficient")
         return lens.with_surface(index, aspheric_coefficients=terms)
-    raise InputError(f'"{field:.40}" is no column of the table of surfaces')
+    raise InputError(f'the table of surfaces has no column "{field:.40}"')
 
 
 def with_plate(lens: Lens, index: int) -> Lens:
@@ -62,7 +62,7 @@ def with_plate(lens: Lens, index: int) -> Lens:
         return lens.inserted(0, [back.replace(thickness_mm=0.2 * rim, material=_PLATE_GLASS), back])
     gap = _Gap.before(lens, index)
     if not gap.narrowest > 0.01:
-        raise InputError(f"there is no room before surface {index + 1}, which the one before it touches")
+        raise InputError(f"there is no room before surface {index + 1}, which touches the surface before it")
     medium = next((s.material for s in surfaces[index - 1 :: -1] if s.type == "refracting"), None)
     if medium is not None and medium.index(lens.wavelength_nm) != 1:
         start = 0.5 * gap.narrowest
@@ -90,6 +90,7 @@ class _Gap:
 
     @property
     def rim_mm(self) -> float:
+        """The smaller clear semi-diameter of both surfaces."""
         return min(self.front.clear_semi_diameter_mm, self.back.clear_semi_diameter_mm)
 
     @cached_property
@@ -102,6 +103,7 @@ class _Gap:
 
     @property
     def narrowest(self) -> float:
+        """Smallest length of the gap within the rim."""
         return min(end - start for start, end in self._ends)
 
     def bent(self, start: float, end: float, material: Glass | None) -> Surface:
@@ -113,6 +115,7 @@ class _Gap:
         )
 
     def flat(self, start: float, end: float, material: Glass | None) -> Surface:
+        """Returns a flat face at `start` with a medium that reaches to `end`; None: air."""
         return Surface(
             thickness_mm=(end - start) * self.length_mm, material=material, clear_semi_diameter_mm=self.rim_mm
         )
@@ -152,23 +155,26 @@ def glass_of(text: Any) -> float | tuple[float, float] | Glass | None:
     if words[0][0].isdigit():
         numbers = [_number(word, "the index") for word in words]
         if len(numbers) > 2:
-            raise InputError("a glass is its index, its index and its Abbe number, or its name")
+            raise InputError("a glass must be an index, an index and an Abbe number, or a name")
         return numbers[0] if len(numbers) == 1 else (numbers[0], numbers[1])
     return Glass.named(" ".join(words))
 
 
 def _is_moved_by_zoom(lens: Lens, index: int) -> bool:
+    """True if the thickness behind a surface depends on the zoom."""
     return len({lens.zoomed(name).surfaces[index].thickness_mm for name in lens.zoom_positions}) > 1
 
 
 def _surface(lens: Lens, index: int) -> Surface:
+    """Returns a surface by its index. Raises InputError."""
     if not (isinstance(index, int) and 0 <= index < len(lens.surfaces)):
-        raise InputError(f"there is no surface {index + 1} in a lens of {len(lens.surfaces)}")
+        raise InputError(f"there is no surface {index + 1} in a lens of {len(lens.surfaces)} surfaces")
     return lens.surfaces[index]
 
 
-def _number(value: Any, what: str) -> float:
+def _number(value: Any, name: str) -> float:
+    """Parses a number with a decimal point or comma. Raises InputError with the name of the quantity."""
     try:
         return float(str(value).replace(",", ".").replace("−", "-"))
     except ValueError:
-        raise InputError(f'{what}: "{value!s:.40}" is no number') from None
+        raise InputError(f'{name} must be a number; found "{value!s:.40}"') from None

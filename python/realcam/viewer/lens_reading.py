@@ -8,7 +8,8 @@ from pathlib import Path
 from .._core import InputError, Lens, RealcamError
 from .worker_process import WorkerProcess, WorkError
 
-_LONGEST_S = 10.0
+_TIMEOUT_S = 10.0
+#: Process that reads lens files for all windows.
 reader = WorkerProcess()
 
 
@@ -21,9 +22,9 @@ def lens_from(name: str, content: bytes) -> tuple[Lens, list[str]]:
         path = Path(folder) / f"{Path(name).stem[:60]}{Path(name).suffix.lower()}"
         try:
             path.write_bytes(content)
-            lens, notes = reader.call(_read, path, seconds=_LONGEST_S)
+            lens, notes = reader.call(_read, path, seconds=_TIMEOUT_S)
         except WorkError as error:
-            raise InputError(f"{name}: reading it {error}") from None
+            raise InputError(f"{name}: reading the file {error}") from None
         except (RealcamError, OSError) as error:
             raise InputError(str(error).replace(str(path), name)) from None
     return lens, [note.replace(str(path), name) for note in notes]

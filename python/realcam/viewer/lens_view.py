@@ -13,7 +13,7 @@ from ..fields import angle_of_height
 from ..section import CrossSection, cross_section
 from ..section.cut import PLANES, Cut, Points
 
-_RAYS = 9
+_RAYS = 9  # rays of each bundle
 
 
 def lens_view(lens: Lens, plane: str = "yz") -> dict[str, Any]:
@@ -51,8 +51,8 @@ def drawn_heights_mm(film: Film, point: tuple[float, float] | None, axis: int | 
 
     axis: None: distance from the axis; 0 or 1: the x or y coordinate.
     """
-    at = film_point(*(point or (0.5 - 0.35, 0.5 + 0.35)), film)
-    height = math.hypot(*at) if axis is None else at[axis]
+    film_mm = film_point(*(point or (0.5 - 0.35, 0.5 + 0.35)), film)
+    height = math.hypot(*film_mm) if axis is None else film_mm[axis]
     return (0.0, height) if abs(height) > 5e-4 * math.hypot(film.width_mm, film.height_mm) else (0.0,)
 
 
@@ -62,10 +62,10 @@ def ray_view(lens: Lens, heights_mm: Sequence[float], plane: str = "yz") -> dict
     """
     try:
         if lens.is_rotational:
-            _, last_mm = angle_of_height(lens, 0.5 * math.hypot(*lens.film_mm))
+            _, largest_mm = angle_of_height(lens, 0.5 * math.hypot(*lens.film_mm))
         else:
-            last_mm = 0.5 * lens.film_mm[PLANES[plane]]
-        fields = [max(-1.0, min(1.0, height / last_mm)) for height in heights_mm]
+            largest_mm = 0.5 * lens.film_mm[PLANES[plane]]
+        fields = [max(-1.0, min(1.0, height / largest_mm)) for height in heights_mm]
         section = cross_section(lens, plane=plane, rays=_RAYS, fields=fields)
     except InputError as error:
         return {"bundles": [], "note": str(error)}
@@ -76,6 +76,7 @@ def ray_view(lens: Lens, heights_mm: Sequence[float], plane: str = "yz") -> dict
 
 
 def _row(lens: Lens, index: int) -> dict[str, Any]:
+    """Row of the table of surfaces; z is the position of the vertex, mm."""
     surface = lens.surfaces[index]
     last = index + 1 == len(lens.surfaces)
     in_xz = {"radius_x_mm": _finite(surface.radius_of_curvature_x_mm)} if surface.form in ("toroid", "biconic") else {}
@@ -93,6 +94,7 @@ def _row(lens: Lens, index: int) -> dict[str, Any]:
 
 
 def _shapes(section: CrossSection) -> dict[str, Any]:
+    """Lines and polygons of a section: faces, elements, apertures, overlaps of surfaces, and marks."""
     return {
         "faces": [
             {
@@ -118,6 +120,7 @@ def _shapes(section: CrossSection) -> dict[str, Any]:
 
 
 def _figures(lens: Lens) -> dict[str, float | None]:
+    """First-order data; None in place of infinity."""
     data = lens.first_order()
     return {
         "effective_focal_length_mm": _finite(data.effective_focal_length_mm),
@@ -133,6 +136,7 @@ def _figures(lens: Lens) -> dict[str, float | None]:
 
 
 def _points(points: Points) -> list[list[float]]:
+    """(z, height) pairs of points, rounded."""
     # Rounds to a thousandth of a line's width, if the lens fills the window.
     size = float(np.max(np.abs(points), initial=1e-9))
     return np.round(points, max(0, 5 - math.floor(math.log10(size)))).tolist()  # type: ignore[no-any-return]

@@ -8,18 +8,22 @@ from typing import Any
 from .._core import Camera, RealcamError, Scene
 from ..accuracy import accuracy_cost
 
-_FEW: dict[str, Any] = {"size": 120, "max_spp": 16, "reference_spp": 256}  # some seconds on two cores
+# Arguments of accuracy_cost for a quick measurement: some seconds on two cores.
+_QUICK_SETTINGS: dict[str, Any] = {"size": 120, "max_spp": 16, "reference_spp": 256}
 
 
 def measured_levels(scene: Scene, camera: Camera, device: str) -> tuple[list[dict[str, Any]], str]:
-    """Returns each level's name and points (seconds, error), with times extrapolated to the full resolution; and a
-    note."""
+    """Returns each level's "name" and "points", and a note for the user.
+
+    Points are pairs of the render time in seconds, extrapolated to the full resolution, and the RMS error in 8-bit
+    codes.
+    """
     try:
-        cost = accuracy_cost(scene, camera, **_FEW, device=device, samplings=False)
+        cost = accuracy_cost(scene, camera, **_QUICK_SETTINGS, device=device, samplings=False)
     except RealcamError as error:
         return [], str(error)
     pixels = math.prod(camera.film.resolution) / math.prod(cost.size)
     levels = [
-        {"name": rung.name, "points": [[pixels * p.seconds, p.rmse] for p in rung.pictures]} for rung in cost.rungs
+        {"name": level.name, "points": [[pixels * p.seconds, p.rmse] for p in level.pictures]} for level in cost.rungs
     ]
     return levels, f"against a reference with noise of {cost.reference_noise_codes:.2g} grey levels"

@@ -22,7 +22,8 @@ class NewestTask:
     """
 
     def __init__(self, name: str, *, quiet_s: float = 0.0, delay_s: float = 0.0, share: float = 1.0) -> None:
-        self._quiet_s, self._delay_s, self._rest = quiet_s, delay_s, 1 / share - 1
+        self._quiet_s, self._delay_s = quiet_s, delay_s
+        self._pause_ratio = 1 / share - 1  # pause after a task, relative to its duration
         self._wake = threading.Condition()
         self._task: Callable[[], None] | None = None
         self._is_closed = False
@@ -30,6 +31,7 @@ class NewestTask:
         threading.Thread(target=self._run, name=name, daemon=True).start()
 
     def submit(self, task: Callable[[], None]) -> None:
+        """Runs a task on the thread, in place of one that has not started yet."""
         with self._wake:
             self._task = task
             self._wake.notify()
@@ -60,5 +62,5 @@ class NewestTask:
                 pass  # the interpreter is ending
             except Exception:
                 _log.exception("a task of thread %s failed", self._name)
-            if self._rest:
-                time.sleep(self._rest * (time.perf_counter() - begun))
+            if self._pause_ratio:
+                time.sleep(self._pause_ratio * (time.perf_counter() - begun))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from .._core import Lens
 
-_ZOOM_STEPS = 300
+_ZOOM_STEPS = 300  # steps of the zoom ring over its range
 
 # Engravings as text, because numbers would be shown as 1.0 or 0.0167.
 _APERTURES = (
@@ -54,6 +54,7 @@ class Ring:
 
 
 def _ring(engraved: Sequence[str], first: float, per_doubling: int) -> Ring:
+    """Scale of geometric steps. first: value of the first one. per_doubling: number of steps to twice the value."""
     return Ring(tuple(first * 2 ** (k / per_doubling) for k in range(len(engraved))), tuple(engraved))
 
 
@@ -63,7 +64,10 @@ ISO = _ring(_ISO, 50.0, 3)
 
 
 def aperture_ring(widest: float) -> Ring:
-    """f-numbers from the lens's smallest, which usually lies between two steps, to f/64."""
+    """f-numbers from `widest`, the lens's smallest, which usually lies between two steps, to f/64.
+
+    An infinite one, of an afocal lens, gives a ring of one step.
+    """
     if not math.isfinite(widest):
         return Ring((1.0,), ("-",))
     steps = [step for step, value in enumerate(_ALL_APERTURES.values) if value > widest * 1.02]
@@ -78,13 +82,13 @@ def zoom_ring(lens: Lens) -> Ring | None:
 
     None: the lens has no continuous zoom (see Lens.zoomed).
     """
-    known = lens.zoom_focal_lengths_mm
-    if len(known) < 2 or known not in (sorted(known), sorted(known, reverse=True)):
+    focal_lengths = lens.zoom_focal_lengths_mm
+    if len(focal_lengths) < 2 or focal_lengths not in (sorted(focal_lengths), sorted(focal_lengths, reverse=True)):
         return None
-    if not 0 < min(known) < max(known):
+    if not 0 < min(focal_lengths) < max(focal_lengths):
         return None
-    ratio = (max(known) / min(known)) ** (1 / _ZOOM_STEPS)
-    values = [min(known) * ratio**step for step in range(_ZOOM_STEPS + 1)]
-    for focal_length_mm in known:
-        values[round(math.log(focal_length_mm / min(known), ratio))] = focal_length_mm
+    ratio = (max(focal_lengths) / min(focal_lengths)) ** (1 / _ZOOM_STEPS)
+    values = [min(focal_lengths) * ratio**step for step in range(_ZOOM_STEPS + 1)]
+    for focal_length_mm in focal_lengths:
+        values[round(math.log(focal_length_mm / min(focal_lengths), ratio))] = focal_length_mm
     return Ring(tuple(values), tuple(f"{value:.4g}" for value in values))

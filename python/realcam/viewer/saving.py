@@ -17,6 +17,7 @@ from .camera_controls import CameraControls
 from .shot_source import ShotSource
 
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".exr", ".dng")
+#: Suffixes of the files that a picture, a shot or a lens can be saved as.
 SUFFIXES = {"picture": PICTURE_SUFFIXES, "shot": (".toml",), "lens": (".toml", ".zmx", ".seq", ".json", ".roa")}
 _FILES_OF_A_SHOT = ("scene", "environment", "texture")  # keys with paths relative to the shot file
 _JPEG_QUALITY = 95
@@ -26,8 +27,8 @@ def check_suffix(what: str, name: str) -> None:
     """Checks a file name's suffix. what: a key of SUFFIXES. Raises InputError if the suffix is not valid for it."""
     if Path(name).suffix.lower() not in SUFFIXES[what]:
         *others, last = SUFFIXES[what]
-        wanted = f"{', '.join(others)} or {last}" if others else last
-        raise InputError(f'"{name:.80}": expected a {what} file whose name ends in {wanted}')
+        expected = f"{', '.join(others)} or {last}" if others else last
+        raise InputError(f'"{name:.80}": expected a {what} file whose name ends in {expected}')
 
 
 def picture_content(image: Image, name: str, tone: str) -> bytes:
@@ -65,7 +66,8 @@ def lens_content(lens: Lens, name: str) -> tuple[bytes, list[str]]:
 def shot_contents(source: ShotSource, controls: CameraControls, effects: list[str], path: Path) -> dict[Path, bytes]:
     """Returns the contents of the files to write: the current shot, and its lens unless it is a bundled one.
 
-    Keys that the bench does not change are copied from the source. Raises InputError.
+    effects: in the notation of shot files. path: of the shot file; relative paths in the shot start there. Keys that
+    the bench does not change are copied from the source. Raises InputError.
     """
     check_suffix("shot", path.name)
     shot: Any = tomlkit.parse(source.text)

@@ -11,7 +11,7 @@ from ..shot import Shot, is_shot_file, shot_with_words, text_of_shot_of
 
 @dataclass(frozen=True)
 class ShotSource:
-    """Source of a bench. text: content of a shot file. folder: base of its relative paths."""
+    """Source of a bench. name: of the file. text: content of a shot file. folder: base of its relative paths."""
 
     name: str
     text: str

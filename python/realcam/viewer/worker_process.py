@@ -19,8 +19,8 @@ from .._core import InputError
 
 T = TypeVar("T")
 _NICENESS = 5  # lower priority than rendering
-_LONGEST_START_S = 60.0  # of the process, and of an import in it
-_MOST_BYTES = 4 << 30  # memory limit of the process
+_START_TIMEOUT_S = 60.0  # of the process, and of an import in it
+_MAX_BYTES = 4 << 30  # memory limit of the process
 _PROCESSES = multiprocessing.get_context("spawn")
 
 
@@ -35,33 +35,33 @@ class WorkerProcess:
     """
 
     def __init__(self) -> None:
-        self._turn = threading.Lock()  # serialises calls
-        self._beginning = threading.Lock()  # guards the fields below
+        self._call_lock = threading.Lock()  # serialises calls
+        self._process_lock = threading.Lock()  # guards the fields below
         self._is_ended = False
         self._process: BaseProcess | None = None
-        self._line: Connection | None = None
+        self._connection: Connection | None = None
 
     def call(self, function: Callable[..., T], *arguments: Any, seconds: float) -> T:
         """Returns the function's result or raises its exception. Function, arguments and result must be picklable.
 
         Raises WorkError if the process crashes, or after `seconds`. A start of the process is not counted.
         """
-        with self._turn:
-            line, is_new = self._begun()
+        with self._call_lock:
+            connection, is_new = self._started()
             try:
-                if is_new and not line.poll(_LONGEST_START_S):
-                    raise WorkError(f"did not begin within {_LONGEST_START_S:g} s")
+                if is_new and not connection.poll(_START_TIMEOUT_S):
+                    raise WorkError(f"did not begin within {_START_TIMEOUT_S:g} s")
                 if is_new:
-                    line.recv()
-                line.send((function, arguments))
-                if not line.poll(seconds):
+                    connection.recv()
+                connection.send((function, arguments))
+                if not connection.poll(seconds):
                     raise WorkError(f"took longer than {seconds:g} s")
-                is_done, value = line.recv()
+                is_done, value = connection.recv()
             except (EOFError, OSError):
-                self._forget()
+                self._discard()
                 raise WorkError("crashed") from None
             except BaseException:
-                self._forget()
+                self._discard()
                 raise
         if not is_done:
             raise value
@@ -71,33 +71,39 @@ class WorkerProcess:
     def warm_up(self, module: str) -> None:
         """Starts the process and imports a module, to shorten the first call."""
         with contextlib.suppress(WorkError):
-            self.call(_import, module, seconds=_LONGEST_START_S)
+            self.call(_import, module, seconds=_START_TIMEOUT_S)
 
     def end(self) -> None:
         """Kills the process permanently. A call in progress raises WorkError, and so do later calls."""
-        with self._beginning:
+        with self._process_lock:
             self._is_ended = True
             self._kill()
 
-    def _begun(self) -> tuple[Connection, bool]:
-        """Returns the connection to the process, and true if it was started now and will send that it is ready."""
-        if self._line and self._process and self._process.is_alive():
-            return self._line, False
-        self._forget()
-        with self._beginning:
-            if self._is_ended:
-                raise WorkError("is not done any more")
-            self._line, theirs = _PROCESSES.Pipe()
-            self._process = _PROCESSES.Process(target=_work, args=(theirs,), name="realcam-worker", daemon=True)
-            self._process.start()
-            theirs.close()
-            return self._line, True
+    def _started(self) -> tuple[Connection, bool]:
+        """Returns the connection to the process, and true if the process was started now and will send that it is ready.
 
-    def _forget(self) -> None:
-        if self._line:
-            self._line.close()
+        Raises WorkError after end().
+        """
+        if self._connection and self._process and self._process.is_alive():
+            return self._connection, False
+        self._discard()
+        with self._process_lock:
+            if self._is_ended:
+                raise WorkError("is no longer possible: the server is ending")
+            self._connection, child_connection = _PROCESSES.Pipe()
+            self._process = _PROCESSES.Process(
+                target=_work, args=(child_connection,), name="realcam-worker", daemon=True
+            )
+            self._process.start()
+            child_connection.close()
+            return self._connection, True
+
+    def _discard(self) -> None:
+        """Kills the process, if there is one, so that the next call starts another."""
+        if self._connection:
+            self._connection.close()
         self._kill()
-        self._process = self._line = None
+        self._process = self._connection = None
 
     def _kill(self) -> None:
         process = self._process
@@ -106,23 +112,24 @@ class WorkerProcess:
             process.join()
 
 
-def _work(line: Connection) -> None:
+def _work(connection: Connection) -> None:
+    """Main function of the process: answers calls (function, arguments) by (True, result) or (False, exception)."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in a terminal is handled by the parent
     _end_with_parent()
     os.nice(_NICENESS)
-    resource.setrlimit(resource.RLIMIT_DATA, (_MOST_BYTES, _MOST_BYTES))
+    resource.setrlimit(resource.RLIMIT_DATA, (_MAX_BYTES, _MAX_BYTES))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    line.send(None)  # ready: this module and the package are imported
+    connection.send(None)  # ready: this module and the package are imported
     while True:
         try:
-            function, arguments = line.recv()
+            function, arguments = connection.recv()
         except EOFError:
             return
         try:
             answer = True, function(*arguments)
         except Exception as error:
             answer = False, error
-        line.send(answer)
+        connection.send(answer)
 
 
 def _import(module: str) -> None:

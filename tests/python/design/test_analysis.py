@@ -321,7 +321,7 @@ def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest
 
     monkeypatch.setattr(ReportPlots, "pages", pages_of)
     # What the fisheye's curves are is no matter here. realcam.analysis.mtf is the function.
-    monkeypatch.setattr(import_module("realcam.analysis.mtf"), "_MOST_DOUBLINGS", 2)
+    monkeypatch.setattr(import_module("realcam.analysis.mtf"), "_MAX_DOUBLINGS", 2)
     analysis.save_report(rc.Lens.load(name), tmp_path / "r.html", wavelengths_nm=[546.0], theme="dark")
     text = (tmp_path / "r.html").read_text(encoding="utf-8")
     assert text.count("<svg") == 4
@@ -334,10 +334,10 @@ def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest
         return
     # The edge of its light is too uneven for a transfer function; reasons stay in place.
     titles = [axes.get_title() for axes in pages[1].axes]
-    assert "MTF of rays alone" in titles
-    assert "MTF over the field, of rays alone" in titles
+    assert "MTF, geometric" in titles
+    assert "MTF over the field, geometric" in titles
     renderer = FigureCanvasAgg(pages[2]).get_renderer()
-    reasons = [(axes, text) for axes in pages[2].axes for text in axes.texts if "no plane grid" in text.get_text()]
+    reasons = [(axes, text) for axes in pages[2].axes for text in axes.texts if "a plane grid" in text.get_text()]
     assert len(reasons) == 1
     axes, text = reasons[0]
     assert text.get_window_extent(renderer).width < 1.3 * axes.bbox.width
@@ -417,7 +417,7 @@ def test_commands(tmp_path: Path, realcam: Callable[..., tuple[int, str, str]]) 
         (["plot", "mtf", "tessar-50mm", "--fields-deg", "1,a"], '"a" is not a number'),
         (["plot", "mtf", "tessar-50mm", "--theme", "blue"], "expected light or dark"),
         (["plot", "mtf", "tessar-50mm", "--method", "fft"], "expected diffraction or geometric"),
-        (["plot", "spot", "tessar-50mm", "--method", "fft"], "--method goes with mtf"),
+        (["plot", "spot", "tessar-50mm", "--method", "fft"], "--method applies only to mtf"),
         (["report", "tessar-50mm", "-o", "x.svg"], "expected .pdf or .html"),
         (["report", "tessar-50mm", "--fields-deg", "1,2", "-o", "x.pdf"], "three fields; 2 are given"),
         (["report", "tessar-50mm", "--fields-deg", "0,10,70", "-o", "x.pdf"], "70"),

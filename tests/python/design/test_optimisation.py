@@ -92,10 +92,10 @@ FRONT = [rc.Variable.radius(0)]
 @pytest.mark.parametrize(
     ("variables", "targets", "message"),
     [
-        ([], {}, "nothing to change"),
+        ([], {}, "must have at least one Variable"),
         ([rc.Variable("colour", 0)], {}, "unknown quantity"),
         ([rc.Variable.radius(99)], {}, "no surface 99"),
-        ([rc.Variable.radius(TRIPLET.stop_index)], {}, r"surface \d is a stop, a plane, and has no curvature"),
+        ([rc.Variable.radius(TRIPLET.stop_index)], {}, r"surface \d is a plane stop and has no curvature"),
         ([rc.Variable.conic(1)], {}, "is a plane: its conic has no effect"),
         ([rc.Variable.thickness(6)], {}, "last surface has no thickness"),
         ([rc.Variable.thickness(0, lower_mm=50)], {}, "the thickness of surface 1 is .* does not lie between"),
@@ -113,7 +113,7 @@ FRONT = [rc.Variable.radius(0)]
             {"operands": [rc.Operand("centre_thickness_mm", surface=99)]},
             "there is no surface 99; the lens has 7",
         ),
-        (FRONT, {"operands": [rc.Operand("mtf_sagittal")]}, "frequency_per_mm is required"),
+        (FRONT, {"operands": [rc.Operand("mtf_sagittal")]}, "needs a frequency_per_mm"),
     ],
 )
 def test_what_makes_no_sense_is_said(variables: list[rc.Variable], targets: dict[str, object], message: str) -> None:

@@ -255,7 +255,7 @@ def test_depth_of_field_over_distance_tells_what_it_misses() -> None:
 
 
 def test_depth_of_field_over_distance_asks_for_a_lens_that_focuses() -> None:
-    with pytest.raises(rc.InputError, match="none of these distances"):
+    with pytest.raises(rc.InputError, match="at any of these distances"):
         depth_over_focus(GAUSS, focus_m=[0.01])
 
 

@@ -279,18 +279,18 @@ def test_a_study_that_is_ended_has_what_is_done():
     [
         ({"radius_mm": float("nan")}, {}, "radius_mm is nan; expected a number of 0 or more"),
         ({"radius_mm": {99: 0.1}}, {}, "no surface 99; the lens has 11, counted from 0"),
-        ({"radius_mm": {5: 0.1}}, {}, "radius_mm: surface 6 is a stop, which bends no light"),
-        ({"thickness_mm": {10: 0.1}}, {}, "surface 11 is the last; the film follows it"),
+        ({"radius_mm": {5: 0.1}}, {}, "radius_mm: surface 6 is a stop, which does not refract"),
+        ({"thickness_mm": {10: 0.1}}, {}, "surface 11 is the last; the distance to the film"),
         ({"index": {1: 0.1}}, {}, "no glass behind surface 2"),
         ({"wedge_arcmin": {0: 1}}, {}, "no glass in front of surface 1, and no wedge; use surface_tilt_arcmin"),
-        ({"element_tilt_arcmin": {(3, 3): 1}}, {}, "surface 4 alone is no element"),
+        ({"element_tilt_arcmin": {(3, 3): 1}}, {}, "behind its first one, surface 4"),
         ({"wedge_arcmin": 700.0}, {}, "wedge_arcmin is 700; expected at most 600"),
-        ({}, {}, "there is no tolerance"),
+        ({}, {}, "at least one tolerance must be above 0"),
         ({"radius_mm": 0.1}, {"copies": 0}, "copies is 0; expected a whole number from 1"),
         ({"radius_mm": 0.1}, {"seed": -1}, "seed is -1; expected a whole number of 0 or more"),
         ({"radius_mm": 0.1}, {"compensators": ("tilt",)}, 'unknown compensator "tilt"; expected refocus, film_tilt'),
         ({"radius_mm": 0.1}, {"compensators": ("film_tilt",), "fields_deg": [0, 5]}, "the fields lie on one line"),
-        ({"radius_mm": 0.1}, {"compensators": (rc.ElementShift(4, 4),)}, "surface 5 alone is no element"),
+        ({"radius_mm": 0.1}, {"compensators": (rc.ElementShift(4, 4),)}, "behind its first one, surface 5"),
         (
             {"radius_mm": 0.1},
             {"compensators": (rc.ElementShift(0, 1, range_mm=0),)},
@@ -349,7 +349,7 @@ def test_the_command_writes_a_report_and_json(tmp_path, command):
 @pytest.mark.parametrize("name", ["schmidt-225mm", "view-camera-210mm"])
 def test_lenses_that_are_not_of_revolution_are_refused(name):
     """Their film is curved or tilted: a study that took it for flat would be wrong by hundreds of micrometres."""
-    with pytest.raises(rc.InputError, match=f'tolerances are of lenses of revolution.*"{name}" is none'):
+    with pytest.raises(rc.InputError, match=f'tolerances need a rotationally symmetric lens.*"{name}" is not'):
         tolerance_study(Lens.load(name), "high", 2)
 
 

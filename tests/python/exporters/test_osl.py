@@ -188,7 +188,7 @@ def test_a_lens_that_osl_cannot_express_is_refused_by_its_surface(tmp_path: Path
         (lens.with_surface(2, tilt_deg=(1, 0, 0), returns=True), "surface 3 is tilted"),
         (lens.with_surface(1, form="biconic", radius_of_curvature_x_mm=90.0), "surface 2 is a biconic"),
         (lens.with_surface(1, form="toroid", radius_of_curvature_x_mm=90.0), "surface 2 is a toroid"),
-        (lens.with_surface(0, xy_terms={(1, 1): 1e-6}), "surface 1 has terms of a free form"),
+        (lens.with_surface(0, xy_terms={(1, 1): 1e-6}), "surface 1 has freeform terms"),
         (lens.with_surface(0, radial_terms={3: 1e-6}), "surface 1 has radial_terms"),
         (lens.with_surface(4, aperture={"rectangle_mm": [3, 2]}), "surface 5 has an aperture"),
         (lens.with_film_radius(-80.0), "film is curved"),

@@ -119,7 +119,9 @@ def test_another_version_is_refused_by_its_name(tmp_path: Path, command: Command
     (folder / "job.json").write_text(json.dumps(about))
     refused = command("job", "work", folder, "--here")
     assert refused.returncode == 2
-    made_by_another = f"{folder}: realcam 9.8.7 made this job, and this is realcam {rc.__version__}; all machines"
+    made_by_another = (
+        f"{folder}: this job was made by realcam 9.8.7, and this is realcam {rc.__version__}; all machines"
+    )
     assert refused.stderr.startswith(f"realcam: error: {made_by_another}")
     about["format"] += 1
     (folder / "job.json").write_text(json.dumps(about))
@@ -132,7 +134,11 @@ def test_a_machine_that_computes_other_bits_is_refused(tmp_path: Path) -> None:
     made(folder)
     about = json.loads((folder / "job.json").read_text())
     for key, other, why in (
-        ("instruction_set", "v2", "the job wants realcam .*x86-64-v2, and here is .*; their samples would differ"),
+        (
+            "instruction_set",
+            "v2",
+            "the job requires realcam .*x86-64-v2; this process has .*, whose samples would differ",
+        ),
         ("embree", "1.0", "the job wants realcam .*Embree 1.0"),
     ):
         changed = {**about, "engine": {**about["engine"], key: other}}
@@ -141,7 +147,9 @@ def test_a_machine_that_computes_other_bits_is_refused(tmp_path: Path) -> None:
             rc.Job.load(folder).work()
     changed = {**about, "probes": dict.fromkeys(about["probes"], "0" * 64)}
     (folder / "job.json").write_text(json.dumps(changed))
-    with pytest.raises(rc.InputError, match="this machine computes other samples than the one that made the job"):
+    with pytest.raises(
+        rc.InputError, match="the samples of this machine differ from those of the one that made the job"
+    ):
         rc.Job.load(folder).work()
     assert units(folder) == {}
     assert "REALCAM_INSTRUCTION_SET" not in os.environ
@@ -162,7 +170,7 @@ def test_what_was_deleted_or_damaged_is_done_again(tmp_path: Path, command: Comm
     told = command("job", "status", folder)
     assert told.returncode == 0
     assert f", 1 damaged (00000/{done[5].name}), which realcam job work does again" in told.stdout
-    with pytest.raises(rc.InputError, match=r"2 of .* units are missing; realcam job work does them"):
+    with pytest.raises(rc.InputError, match=r"2 of .* units are missing; run realcam job work to render them"):
         job.image()
     (folder / "rounds" / "00000" / "002.npz").write_bytes(b"nothing")
     job.work()
@@ -171,7 +179,7 @@ def test_what_was_deleted_or_damaged_is_done_again(tmp_path: Path, command: Comm
     content = bytearray(done[-1].read_bytes())
     content[len(content) // 2] ^= 1
     done[-1].write_bytes(content)
-    with pytest.raises(rc.InputError, match=r"damaged: .* realcam job work .* takes its samples again"):
+    with pytest.raises(rc.InputError, match=r"damaged: .* run realcam job work .* to render its samples again"):
         job.image()
     job.work()
     assert job.image() == before
@@ -180,7 +188,7 @@ def test_what_was_deleted_or_damaged_is_done_again(tmp_path: Path, command: Comm
 @pytest.mark.parametrize(
     ("lost", "why"),
     [
-        ("job.json", "this is no job's folder: it has no job.json"),
+        ("job.json", "is not the folder of a job: it has no job.json"),
         ("shots/00000.npz", "there is no such file"),
         ("scenes", "there is no such file"),
     ],
@@ -391,15 +399,18 @@ def test_what_is_no_job_is_refused(tmp_path: Path) -> None:
     with pytest.raises(rc.InputError, match="there is no such folder"):
         rc.Job.load(folder)
     for shots, tile, why in (
-        ({}, TILE, "a job wants one shot at least"),
-        *(({name: shot(4)}, TILE, "a shot's name is that of its picture") for name in ("", "a/b", ".hidden", "a\nb")),
+        ({}, TILE, "a job needs at least one shot"),
+        *(
+            ({name: shot(4)}, TILE, "a shot's name must be valid as the name of its picture")
+            for name in ("", "a/b", ".hidden", "a\nb")
+        ),
         ({"lamp": shot(4)}, (0, 8), "a tile must have 1 to"),
     ):
         with pytest.raises(rc.InputError, match=why):
             rc.Job.make(folder, shots, device="cpu", tile=tile)
     assert not folder.exists()
     job = made(folder, one=shot(4), two=shot(4, seed=1))
-    with pytest.raises(rc.InputError, match="this job is there already"):
+    with pytest.raises(rc.InputError, match="this job exists already"):
         made(folder)
     with pytest.raises(rc.InputError, match="the job has 2 shots; specify the name of one"):
         job.image()
@@ -490,9 +501,9 @@ def contents(folder: Path) -> dict[Path, bytes]:
         (("work", "JOB", "--here", "--scheduler", "x"), "--scheduler and --workers exclude them"),
         (("work", "JOB", "--part", "9/8"), "expected K/N, 1/8 to 8/8"),
         (("work", "JOB", "--device", "cuda:1"), "use it together with --here"),
-        (("work", "nowhere"), "nowhere: this is no job's folder: there is no such folder"),
+        (("work", "nowhere"), "nowhere is not the folder of a job: there is no such folder"),
         (("make", "nowhere.toml", "-o", "new"), "nowhere.toml"),
-        (("make", "nowhere.toml", "-o", "JOB"), "this job is there already"),
+        (("make", "nowhere.toml", "-o", "JOB"), "this job exists already"),
         (("make", "nowhere.toml", "-o", "new", "--tile", "8y8"), "expected pixels, 128 or 128x64"),
     ],
 )

@@ -116,7 +116,7 @@ def test_a_scheduler_that_is_not_there_is_told_in_one_line(
 ) -> None:
     from realcam.job import clusters
 
-    monkeypatch.setattr(clusters, "_ANSWERS_WITHIN_S", 1)
+    monkeypatch.setattr(clusters, "_TIMEOUT_S", 1)
     with (
         pytest.raises(rc.InputError, match=f"{address}: no Dask scheduler answers there"),
         clusters.dask_executor(workers=1, scheduler=address),

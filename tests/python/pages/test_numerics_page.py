@@ -139,10 +139,10 @@ def test_broken_input(tool: ModuleType, tmp_path: Path, line: dict | str, told: 
 
 
 def test_no_input(tool: ModuleType, tmp_path: Path) -> None:
-    with pytest.raises(tool.measurements.MeasurementError, match="no measurements; tests write them where"):
+    with pytest.raises(tool.measurements.MeasurementError, match="no measurements; tests write them if"):
         tool.measurements.read(measurement_file(tmp_path))
     (tmp_path / "nameless.jsonl").write_text(json.dumps(LINE) + "\n")
-    with pytest.raises(tool.measurements.MeasurementError, match="of which machine is not said"):
+    with pytest.raises(tool.measurements.MeasurementError, match="the line about the machine is missing"):
         tool.measurements.read(tmp_path / "nameless.jsonl")
     with pytest.raises(tool.measurements.MeasurementError, match="No such file"):
         tool.measurements.read(tmp_path / "nothing.jsonl")

@@ -37,7 +37,7 @@ async def asked(key: str) -> dict[str, int]:
         await asyncio.sleep(0)
     while len(window.stream.inbox):
         await asyncio.sleep(0.01)
-    return await window.do(lambda: window.bench.asked)
+    return await window.do(lambda: window.bench.requested_serials)
 
 
 @app.get("/tests/asked_in_the_end/{key}")
@@ -47,7 +47,7 @@ async def asked_in_the_end(key: str) -> dict[str, int] | None:
     assert window is not None
     if window.stream._sent or window.stream._frames:
         return None
-    return await window.do(lambda: window.bench.asked)
+    return await window.do(lambda: window.bench.requested_serials)
 
 
 @app.get("/tests/left/{key}")

@@ -81,7 +81,7 @@ def first_state(server: Server) -> dict[str, Any]:
     from realcam.viewer.effect_switches import Switches
 
     shot = rc.Shot.load(server.shot)
-    return state_of(CameraControls.of(shot.camera), Switches.of_shot(shot.settings.effects).of)
+    return state_of(CameraControls.of(shot.camera), Switches.from_shot(shot.settings.effects).states)
 
 
 @pytest.fixture

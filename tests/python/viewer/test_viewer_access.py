@@ -218,9 +218,9 @@ def test_links_that_lead_out_are_not_listed(folders: Folders) -> None:
 
 
 def test_folders_that_are_none(tmp_path: Path) -> None:
-    with pytest.raises(rc.InputError, match="no such folder"):
+    with pytest.raises(rc.InputError, match="is not a folder"):
         Folders([tmp_path / "missing"])
     (tmp_path / "file").write_text("")
-    with pytest.raises(rc.InputError, match="no such folder"):
+    with pytest.raises(rc.InputError, match="is not a folder"):
         Folders([tmp_path / "file"])
     assert os.fspath(Folders([tmp_path]).first)

@@ -66,7 +66,7 @@ class Told:
         def frames() -> list[Any]:
             return [frame for s, frame in self.frames if s == slot]
 
-        wanted = self.bench.asked[slot]
+        wanted = self.bench.requested_serials[slot]
         self.until(lambda: frames() and frames()[-1].is_final and frames()[-1].serial >= wanted)
         return frames()[-1]
 
@@ -151,14 +151,14 @@ def test_the_drawing_and_the_sharp_range_are_of_the_film_that_is_chosen(bench: L
 
 def test_what_was_reported_ends_with_the_next_change(bench: LensBench) -> None:
     told = Told(bench)
-    bench.report(Problem("there is no light where the meter looks", of="picture"))
-    assert told.problems[-1] == Problem("there is no light where the meter looks", of="picture")
+    bench.report(Problem("no light reaches the metered point", view="picture"))
+    assert told.problems[-1] == Problem("no light reaches the metered point", view="picture")
     assert bench.change(iso=200)
     assert told.problems[-1] is None
     assert not bench.edit(lambda lens: lens_edits.with_value(lens, 99, "radius_mm", 1.0))
-    assert told.problems[-1].of == "lens"
+    assert told.problems[-1].view == "lens"
     assert not bench.change(focus_m=-1.0)
-    assert told.problems[-1].of == "picture"
+    assert told.problems[-1].view == "picture"
 
 
 def test_metering_makes_its_point_grey_however_often(bench: LensBench) -> None:
@@ -188,7 +188,7 @@ def test_rings_turn_by_thirds_and_stop_at_their_ends(bench: LensBench) -> None:
     bench.change(exposure_time_s=1 / 64)
     bench.turn("shutter", -6)
     assert bench.controls.exposure_time_s == 1 / 256
-    with pytest.raises(rc.InputError, match="no ring"):
+    with pytest.raises(rc.InputError, match='unknown ring "barrel"'):
         bench.turn("barrel", 1)
 
 
@@ -304,16 +304,16 @@ def test_every_bundled_lens_can_be_put_on_the_camera(bench: LensBench) -> None:
 
 def test_switches_name_the_effects(bench: LensBench) -> None:
     told = Told(bench)
-    assert bench.switches.as_words() == []
+    assert bench.switches.as_specs() == []
     bench.show()
     told.until(lambda: told.plans)  # how the switches stand, where nothing is left to the planner
     bench.switch("dispersion", "on")
-    assert bench.switches.as_words() == ["dispersion"]
+    assert bench.switches.as_specs() == ["dispersion"]
     for effect in EFFECTS:
         bench.switch(effect, "auto")
-    assert bench.switches.as_words() == ["auto"]
+    assert bench.switches.as_specs() == ["auto"]
     bench.switch("dispersion", "off")
-    assert bench.switches.as_words() == ["auto", "-dispersion"]
+    assert bench.switches.as_specs() == ["auto", "-dispersion"]
     with pytest.raises(rc.InputError):
         bench.switch("gravity", "on")
 
@@ -339,7 +339,7 @@ def test_a_second_picture_to_compare_with(bench: LensBench) -> None:
 
 def saved_again(bench: LensBench, source: Path, path: Path) -> rc.Shot:
     opened_source, _ = ShotSource.opened(source, "cpu")
-    for file, content in saving.shot_contents(opened_source, bench.controls, bench.switches.as_words(), path).items():
+    for file, content in saving.shot_contents(opened_source, bench.controls, bench.switches.as_specs(), path).items():
         file.write_bytes(content)
     return rc.Shot.load(path)
 
@@ -386,7 +386,7 @@ def test_a_saved_shot_is_the_same_camera(
     other.mkdir()
     again = saved_again(bench, shot_path, other / "saved.toml")
     assert_same_camera(again.camera, bench.controls.camera)
-    assert list(again.effects) == bench.switches.as_words()
+    assert list(again.effects) == bench.switches.as_specs()
     # And once more, from what was saved: nothing drifts, and no lens is written anew.
     twice = saved_again(bench_of(again), other / "saved.toml", other / "twice.toml")
     assert_same_camera(twice.camera, again.camera)

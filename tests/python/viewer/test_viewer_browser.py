@@ -151,7 +151,7 @@ def test_a_wipe_between_two_settings(bench: BenchPage) -> None:
     bench.choose("compare", "these settings")
     before = bench.picture().mean()
     bench.turn("shutter", "ArrowRight", 6)
-    wipe = bench.page.get_by_label("Where one picture ends")
+    wipe = bench.page.get_by_label("Position of the line between both pictures")
     wipe.fill("1")
     longer = bench.picture().mean()
     assert longer > 1.3 * before  # by four times the time
@@ -169,7 +169,7 @@ def test_a_wipe_between_two_settings(bench: BenchPage) -> None:
 def test_a_thin_lens_to_compare_with(bench: BenchPage) -> None:
     before = bench.picture().mean()
     bench.choose("compare", "thin lens")
-    bench.page.get_by_label("Where one picture ends").fill("0")
+    bench.page.get_by_label("Position of the line between both pictures").fill("0")
     # It does not vignette: at the same f-number its corners are brighter.
     assert bench.picture().mean() > 1.02 * before
     bench.choose("compare", "nothing")
@@ -333,7 +333,7 @@ def test_lenses_are_found_in_the_gallery(bench: BenchPage) -> None:
         assert bench.text("gallery-count") == f"{len(wanted)} of {len(rc.lens_names())}"
         bench.test_id(f"gallery-{choice}").select_option("any")
     bench.test_id("gallery-search").fill("no such lens")
-    assert gallery.get_by_text("No lens fits these choices.").is_visible()
+    assert gallery.get_by_text("No lens matches these filters.").is_visible()
     bench.page.keyboard.press("Escape")
     assert not gallery.is_visible()
     before = bench.picture().astype(int)

@@ -224,7 +224,7 @@ def test_what_the_zoom_ring_moves_is_not_edited() -> None:
     for index, surface in enumerate(lens.surfaces):
         longer = surface.thickness_mm + 1e-3
         if index in moved:
-            with pytest.raises(rc.InputError, match=f"the zoom ring moves what is behind surface {index + 1}"):
+            with pytest.raises(rc.InputError, match=f"the zoom ring changes the thickness behind surface {index + 1}"):
                 with_value(lens, index, "thickness_mm", longer)
         elif index + 1 < len(lens.surfaces):
             edited = with_value(lens, index, "thickness_mm", longer)

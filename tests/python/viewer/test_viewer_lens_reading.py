@@ -58,9 +58,9 @@ def test_a_reader_that_crashes_or_never_ends_is_told(monkeypatch: pytest.MonkeyP
         (worker_tasks.compute_for_ever, 0.7, "longer than 0.7 s"),
     ):
         monkeypatch.setattr(lens_reading, "_read", reads)
-        monkeypatch.setattr(lens_reading, "_LONGEST_S", longest_s)
+        monkeypatch.setattr(lens_reading, "_TIMEOUT_S", longest_s)
         begun = time.monotonic()
-        with pytest.raises(rc.InputError, match=f"mine.toml: reading it .*{told}"):
+        with pytest.raises(rc.InputError, match=f"mine.toml: reading the file .*{told}"):
             lens_from("mine.toml", b"")
         # As is that of the state which a page brings back.
         with pytest.raises(rc.InputError, match=told):

@@ -10,7 +10,7 @@ import pytest
 import realcam as rc
 from realcam.viewer.camera_controls import CameraControls
 from realcam.viewer.lens_bench import LensBench
-from realcam.viewer.server.messages import MOST_BYTES, BadMessage, json_text, merged, parsed, perform
+from realcam.viewer.server.messages import MAX_BYTES, BadMessage, json_text, merged, parsed, perform
 
 
 def bench() -> Mock:
@@ -24,7 +24,7 @@ def bench() -> Mock:
 MALFORMED = [
     *("", "{", "nonsense", "[]", "3", "null", '"orbit"', "{}", '{"type": "quit"}', '{"type": null}', '{"type": []}'),
     *('{"type": {}}', '{"type": ["orbit"]}', "[" * 100_000, '{"type":' * 5000, "9" * 5000, "\0"),
-    '{"type": "orbit", "x": 0, "y": 0' + " " * MOST_BYTES + "}",
+    '{"type": "orbit", "x": 0, "y": 0' + " " * MAX_BYTES + "}",
 ]
 
 
@@ -69,7 +69,7 @@ def test_a_message_with_wrong_values(message: dict) -> None:
     made = bench()
     with pytest.raises(BadMessage):
         perform(parsed(json.dumps(message)), made)
-    assert made._take.call_count == 0
+    assert made._apply.call_count == 0
     for change in ("change", "orbit", "pan", "dolly", "focus_at", "meter_at", "hover", "edit"):
         assert getattr(made, change).call_count == 0
 

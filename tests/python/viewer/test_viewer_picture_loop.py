@@ -297,7 +297,7 @@ def test_a_listener_that_fails_does_not_end_the_loop(spheres: rc.Scene) -> None:
         deadline = time.monotonic() + 60
         while not errors and time.monotonic() < deadline:
             time.sleep(0.01)
-        assert errors == ["the picture could not be taken; the server's log says more"]
+        assert errors == ["the picture could not be rendered; see the server's log"]
         loop.submit(PictureRequest(camera(0.1), noise_codes=8.0))
         assert came.wait(60)
     finally:
@@ -378,5 +378,5 @@ def test_a_picture_ends_with_about_the_samples_that_its_noise_takes(
 def test_large_frames_where_few_samples_are_added_to_many() -> None:
     pace, size = Pace(), (100, 100)
     for _ in range(5):
-        pace.took(10_000, 0.1, is_first=False)  # one sample of each pixel
+        pace.record(10_000, 0.1, is_first=False)  # one sample of each pixel
     assert [pace.refining_spp(size, samples) for samples in (0, 8, 15, 16, 40, 4000)] == [1, 1, 1, 2, 5, 10]

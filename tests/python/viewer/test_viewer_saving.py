@@ -47,7 +47,7 @@ def test_the_lens_beside_a_shot_is_asked_for_too(bench: BenchPage, folder: Path)
     edited(bench)
     for reply, is_kept in (("Keep it", True), ("Replace it", False)):
         ask_to_save(bench, "shot", f"{folder.name}/shot.toml")
-        bench.page.get_by_text("shot-lens.toml is there already").wait_for()
+        bench.page.get_by_text("shot-lens.toml exists already").wait_for()
         answer(bench, reply)
         if not is_kept:
             bench.until_text("said", lambda text: text.startswith("Wrote"))
@@ -82,7 +82,7 @@ def test_two_windows_that_save_one_new_name(browser: Any, server: Server, bench:
             page.test_id("save").click(no_wait_after=True)
 
         def seen() -> list[bool]:
-            return [page.page.get_by_text("mine.toml is there already").is_visible() for page in (bench, other)]
+            return [page.page.get_by_text("mine.toml exists already").is_visible() for page in (bench, other)]
 
         until(seen, lambda asked: sum(asked) == 1, "one is asked")
         first, second = (other, bench) if seen()[0] else (bench, other)

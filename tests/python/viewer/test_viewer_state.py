@@ -87,21 +87,21 @@ def test_a_name_leads_to_no_other_folder() -> None:
     ],
 )
 def test_effects_are_those_that_the_shot_names(words: list[str]) -> None:
-    switches = Switches.of_shot(words)
-    assert sorted(switches.as_words()) == sorted(words)
+    switches = Switches.from_shot(words)
+    assert sorted(switches.as_specs()) == sorted(words)
     # What moves and has no switch is left out by its name; a switch that is off is not named.
     named = [word for word in words if word not in ("auto", "-dispersion")]
-    assert sorted(switches.named(None)) == sorted(named)
+    assert sorted(switches.effects_to_simulate(None)) == sorted(named)
 
 
 def test_a_model_without_surfaces_has_none_of_their_effects() -> None:
-    switches = Switches.of_shot(["auto", "dispersion", "ghosts=1e-8", "diffraction", "-motion_blur"])
-    assert switches.of_model("full") is switches
+    switches = Switches.from_shot(["auto", "dispersion", "ghosts=1e-8", "diffraction", "-motion_blur"])
+    assert switches.restricted_to_model("full") is switches
     for model in ("thin", "thick", "pinhole", "polynomial"):
-        of_model = switches.of_model(model)
-        assert of_model.named(None) == ("diffraction", "-motion_blur")
-        assert not {"dispersion", "ghosts=1e-8", "auto"} & set(of_model.as_words())
-    assert switches.named(None) == ("dispersion", "ghosts=1e-8", "diffraction", "-motion_blur")
+        restricted = switches.restricted_to_model(model)
+        assert restricted.effects_to_simulate(None) == ("diffraction", "-motion_blur")
+        assert not {"dispersion", "ghosts=1e-8", "auto"} & set(restricted.as_specs())
+    assert switches.effects_to_simulate(None) == ("dispersion", "ghosts=1e-8", "diffraction", "-motion_blur")
 
 
 def test_a_zoom_ring_of_one_focal_length_is_none() -> None:

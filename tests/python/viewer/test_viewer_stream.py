@@ -201,7 +201,7 @@ def test_what_cannot_be_done_is_told_although_the_connection_was_lost() -> None:
             await until(link.from_page.empty)
         slow.may.set()
         await until(lambda: slow.bench.report.called)
-        slow.bench.report.assert_called_once_with(Problem("there is nothing to take back", of="lens"))
+        slow.bench.report.assert_called_once_with(Problem("there is nothing to take back", view="lens"))
         gc.collect()  # asyncio tells of an exception that nobody has taken when its future goes
         assert unseen == []
 

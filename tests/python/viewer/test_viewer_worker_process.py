@@ -84,7 +84,7 @@ def test_one_that_is_ended_does_no_more(worker: WorkerProcess) -> None:
     time.sleep(0.5)
     worker.end()
     thread.join(WAIT_S)
-    assert told == ["crashed", "is not done any more"]
+    assert told == ["crashed", "is no longer possible: the server is ending"]
     assert not is_there(pid)
 
 

@@ -33,7 +33,10 @@ class RealcamExportShot(bpy.types.Operator, ExportHelper):
 
 
 def write_shot(scene: bpy.types.Scene, path: Path) -> None:
-    """Makes the camera a perspective one while glTF, which has no custom cameras, is written."""
+    """Writes the shot file and, beside it, the scene as .glb.
+
+    The camera is a perspective one meanwhile, because glTF has no custom cameras.
+    """
     camera = scene.camera.data
     camera.type = "PERSP"
     try:
@@ -46,6 +49,7 @@ def write_shot(scene: bpy.types.Scene, path: Path) -> None:
 
 
 def shot_text(scene: bpy.types.Scene, scene_file: str) -> str:
+    """The shot file. scene_file: name of the .glb."""
     rings = scene.camera.data.realcam
     figures = lenses()[rings.lens]
     width_mm, height_mm = film_mm(rings.lens, rings.film)
@@ -90,6 +94,7 @@ def _triple(vector: Vector) -> str:
 
 
 def _focus_m(scene: bpy.types.Scene) -> float:
+    """Focus distance from the film; inf without depth of field."""
     dof = scene.camera.data.dof
     if not dof.use_dof:
         return math.inf

@@ -9,6 +9,7 @@ from typing import Any
 
 FOLDER = Path(__file__).resolve().parent / "lenses"
 
+# Name and size of the films; None: that of the lens.
 FILMS_MM = {
     "lens": ("The lens's own", None),
     "full_frame": ("Full frame, 36 x 24 mm", (36.0, 24.0)),
@@ -22,15 +23,17 @@ FILMS_MM = {
 
 @cache
 def lenses() -> dict[str, dict[str, Any]]:
-    """Lens data by key, sorted by title."""
+    """Lens data by key, in the order of lenses.json; extension_file.py writes them."""
     return json.loads((FOLDER / "lenses.json").read_text(encoding="utf-8"))
 
 
 def shader_of(key: str) -> str:
+    """Text of a lens's OSL shader."""
     return (FOLDER / f"{key}.osl").read_text(encoding="utf-8")
 
 
 def film_mm(key: str, film: str) -> tuple[float, float]:
+    """Width and height of a film, a key of FILMS_MM; "lens" is that of the lens file."""
     return FILMS_MM[film][1] or tuple(lenses()[key]["film_mm"])
 
 

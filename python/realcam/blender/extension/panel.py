@@ -24,12 +24,14 @@ class RealcamTurnRing(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         rings = context.camera.realcam
         numbers = f_numbers(rings.lens)
-        nearest = min(range(len(numbers)), key=lambda i: abs(numbers[i] - rings.f_number))
-        rings.f_number = numbers[max(0, min(len(numbers) - 1, nearest + self.clicks))]
+        stop = min(range(len(numbers)), key=lambda i: abs(numbers[i] - rings.f_number))
+        rings.f_number = numbers[max(0, min(len(numbers) - 1, stop + self.clicks))]
         return {"FINISHED"}
 
 
 class RealcamPanel(bpy.types.Panel):
+    """Panel of the lens settings."""
+
     bl_idname = "CAMERA_PT_realcam"
     bl_label = "Real Lens"
     bl_space_type = "PROPERTIES"
@@ -60,7 +62,7 @@ class RealcamPanel(bpy.types.Panel):
         distance = focus.column()
         distance.active = camera.dof.focus_object is None
         distance.prop(camera.dof, "focus_distance", text="Focus Distance")
-        focus.label(text=f"From the film, which is at the camera's origin; nearest {figures['nearest_m']:.3g} m")
+        focus.label(text=f"Measured from the film, at the camera's origin; nearest {figures['nearest_m']:.3g} m")
         blades = layout.column()
         blades.prop(rings, "blades")
         shape = blades.column()

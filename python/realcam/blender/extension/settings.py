@@ -15,7 +15,10 @@ _MENU: list[tuple[str, str, str, str, int]] = []
 
 
 def lens_menu(_self: object, _context: object) -> list[tuple[str, str, str, str, int]]:
-    """Stable number of an enum item: .blend files store it, so it must not depend on the lenses of the extension."""
+    """Items of the enum of lenses: key, name, description, icon and number.
+
+    The number is a hash of the key: .blend files store it, so that it must not depend on the lenses of the extension.
+    """
     if not _MENU:
         _MENU.append(("none", "None: Blender's own", "A perspective camera", "", 0))
         _MENU.extend(
@@ -47,6 +50,7 @@ def set_lens(self: RealcamLens, _context: object) -> None:
 
 
 def set_film(self: RealcamLens, _context: object) -> None:
+    """Sets the camera's sensor to the film."""
     if self.lens not in lenses():
         return
     camera = self.id_data
@@ -57,8 +61,9 @@ def set_film(self: RealcamLens, _context: object) -> None:
 
 
 def set_rings(self: RealcamLens, _context: object) -> None:
+    """Passes the settings to the shader."""
     if self.lens in lenses():
-        _give_parameters(self.id_data, self, bpy.context.scene)
+        _set_parameters(self.id_data, self, bpy.context.scene)
 
 
 @persistent
@@ -67,12 +72,11 @@ def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     for camera in bpy.data.cameras:
         rings = camera.evaluated_get(depsgraph).realcam
         if rings.lens in lenses():
-            _give_parameters(camera, rings, scene)
+            _set_parameters(camera, rings, scene)
 
 
 def _compile(camera: bpy.types.Camera, text: bpy.types.Text) -> None:
-    """Makes Cycles the engine while a text is assigned: Blender lets the scene's engine compile it, and only Cycles
-    can."""
+    """Assigns a shader. Blender compiles it by the scene's engine, so that Cycles is made the engine meanwhile."""
     render = bpy.context.scene.render
     engine, render.engine = render.engine, "CYCLES"
     try:
@@ -82,7 +86,8 @@ def _compile(camera: bpy.types.Camera, text: bpy.types.Text) -> None:
         render.engine = engine
 
 
-def _give_parameters(camera: bpy.types.Camera, rings: RealcamLens, scene: bpy.types.Scene) -> None:
+def _set_parameters(camera: bpy.types.Camera, rings: RealcamLens, scene: bpy.types.Scene) -> None:
+    """Sets the parameters of the camera's shader if they have changed."""
     parameters = {
         "focus_m": 0.0,  # the focus of Blender's depth of field, which can be an object
         "f_number": max(rings.f_number, lenses()[rings.lens]["f_number"]),
@@ -100,6 +105,8 @@ def _give_parameters(camera: bpy.types.Camera, rings: RealcamLens, scene: bpy.ty
 
 
 class RealcamLens(bpy.types.PropertyGroup):
+    """Settings of a camera's lens."""
+
     lens: EnumProperty(name="Lens", items=lens_menu, update=set_lens)
     film: EnumProperty(name="Film", items=[(key, name, "") for key, (name, _) in FILMS_MM.items()], update=set_film)
     f_number: FloatProperty(
@@ -109,23 +116,33 @@ class RealcamLens(bpy.types.PropertyGroup):
         max=64.0,
         precision=1,
         update=set_rings,
-        description="The ring of the diaphragm; numbers below that of the lens are wide open",
+        description="f-number of the diaphragm; values below the smallest of the lens mean wide open",
     )
     blades: IntProperty(
-        name="Blades", default=0, min=0, max=16, update=set_rings, description="Of the diaphragm; 0 to 2: it is round"
+        name="Blades",
+        default=0,
+        min=0,
+        max=16,
+        update=set_rings,
+        description="Number of diaphragm blades; 0 to 2: circular",
     )
     rounding: FloatProperty(
-        name="Rounding", default=0.0, min=0.0, max=1.0, update=set_rings, description="0: straight blades; 1: a circle"
+        name="Rounding",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+        update=set_rings,
+        description="Rounding of the blades; 0: straight, 1: circular",
     )
-    rotation_deg: FloatProperty(name="Rotation", default=0.0, update=set_rings, description="Of the first blade")
+    rotation_deg: FloatProperty(name="Rotation", default=0.0, update=set_rings, description="Rotation of the diaphragm")
     dispersion: BoolProperty(
-        name="Dispersion", default=True, update=set_rings, description="Each wavelength has its own way through glass"
+        name="Dispersion", default=True, update=set_rings, description="Refractive indices depend on the wavelength"
     )
     keep_brightness: BoolProperty(
         name="Keep Brightness",
         default=True,
         update=set_rings,
-        description="White is white in the middle of the picture at any f-number; otherwise as the film is lit",
+        description="Same brightness at the picture's centre at any f-number; otherwise the illuminance of the film",
     )
 
 

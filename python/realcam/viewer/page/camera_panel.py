@@ -16,6 +16,7 @@ from .elements import RingSlider, show_choice
 from .focus_scale import distance_text, distance_texts, focus_scale_svg
 from .window import Window
 
+#: Descriptions of the camera models, by their names in shot files.
 MODELS = {
     "full": "all surfaces (exact)",
     "polynomial": "polynomial fit",
@@ -24,8 +25,11 @@ MODELS = {
     "thin": "thin lens",
     "pinhole": "pinhole",
 }
+#: Widths of the refined picture, in pixels.
 WIDTHS = (320, 480, 640, 960, 1280, 1920)
+#: Goals for the noise, in 8-bit codes.
 NOISES = (4.0, 2.0, 1.0, 0.5)
+#: Names of common film and sensor sizes, by width and height in mm.
 FILMS = {
     (36.0, 24.0): "36 × 24 mm (full frame)",
     (23.6, 15.7): "23.6 × 15.7 mm (APS-C)",
@@ -35,7 +39,7 @@ FILMS = {
     (56.0, 56.0): "56 × 56 mm (6 × 6)",
     (127.0, 101.6): "127 × 101.6 mm (4 × 5 inches)",
 }
-_ASIDES = {4.0: " (draft)", 0.5: " (fine)"}
+_NOISE_NOTES = {4.0: " (draft)", 0.5: " (fine)"}
 _FOCUS_STEPS = 400  # steps of the slider, uniform in the inverse distance, like the travel of a focusing lens
 
 
@@ -45,7 +49,7 @@ def grey_levels(codes: float) -> str:
 
 
 def _noise_texts(noise: float) -> dict[Any, str]:
-    return {codes: grey_levels(codes) + _ASIDES.get(codes, "") for codes in dict.fromkeys((*NOISES, noise))}
+    return {codes: grey_levels(codes) + _NOISE_NOTES.get(codes, "") for codes in dict.fromkeys((*NOISES, noise))}
 
 
 class CameraPanel:
@@ -63,26 +67,28 @@ class CameraPanel:
         with ui.element("section").classes("rc-controls rc-rings").props('aria-label="Rings"'):
             with ui.element("div").classes("rc-ring-group"):
                 self._focus_text = ui.label().props('data-testid="focus-text"')
-                self._focus = self._ring("Focus", "Distance from the film to the plane that is sharp", self._set_focus)
+                self._focus = self._ring("Focus", "Distance from the film to the plane in focus", self._set_focus)
                 self._scale = ui.html("", sanitize=False).classes("rc-scale")
                 self._sharp_text = ui.label().classes("rc-note").props('data-testid="sharp-text"')
                 self._zoom_text = ui.label().props('data-testid="zoom-text"')
-                self._zoom = self._ring("Zoom", "A longer focal length sees less, and that larger", self._set_zoom)
+                self._zoom = self._ring(
+                    "Zoom", "A longer focal length shows a smaller part of the scene, larger", self._set_zoom
+                )
                 self._position = self._choice(
                     "Zoom position",
                     {},
                     lambda value: self._run(self._bench.set_zoom, value),
-                    "Focal lengths at which the lens file describes the zoom",
+                    "Zoom positions that the lens file describes",
                 )
             with ui.element("div").classes("rc-ring-group"):
                 self._aperture_text = ui.label().props('data-testid="aperture-text"')
                 self._aperture = self._ring(
                     "Aperture",
-                    "A larger f-number is a smaller opening: darker, and sharp over more",
+                    "A larger f-number is a smaller aperture: a darker picture with more depth of field",
                     self._set_aperture,
                 )
                 self._shutter_text = ui.label().props('data-testid="shutter-text"')
-                self._shutter = self._ring("Shutter", "How long the film is exposed", self._set_shutter)
+                self._shutter = self._ring("Shutter", "Exposure time of the film", self._set_shutter)
                 self._iso_text = ui.label().props('data-testid="iso-text"')
                 self._iso = self._ring("ISO", "Sensitivity of the film: a larger number is brighter", self._set_iso)
             with ui.element("div").classes("rc-ring-row"):
@@ -105,17 +111,19 @@ class CameraPanel:
             "Resolution",
             {w: f"{w} pixels across" for w in WIDTHS},
             lambda value: self._run(self._bench.set_resolution, int(value)),
-            "Of the refined picture",
+            "Width of the refined picture",
         )
         self._noise = self._choice(
             "Refine to",
             _noise_texts(self._bench.noise_codes),
             lambda value: self._run(self._bench.set_noise, float(value)),
-            "The noise at which the picture is done, of the 255 grey levels from black to white",
+            "Noise to which the picture is refined, in grey levels of 255 from black to white",
         )
         self._denoise = ui.switch("Denoise while refining").props('data-testid="denoise"')
         self._denoise.on("update:model-value", lambda e: self._run(self._bench.set_denoising, bool(_value(e))))
-        self._denoise.tooltip("Until it is done, the picture is shown and saved as Open Image Denoise cleans it")
+        self._denoise.tooltip(
+            "While the picture is being refined, it is shown and saved denoised by Open Image Denoise"
+        )
         if self._bench.why_no_denoiser:
             self._denoise.disable()
             ui.label(self._bench.why_no_denoiser).classes("rc-note").props('data-testid="why-no-denoiser"')
@@ -123,11 +131,15 @@ class CameraPanel:
             "Film",
             FILMS,
             lambda value: self._run(self._bench.set_film_mm, *value),
-            "Size of the film or sensor; the number of pixels across stays as it is",
+            "Size of the film or sensor; the picture keeps its width in pixels",
         )
         with ui.row().classes("items-center w-full no-wrap"):
-            self._film_width = self._number("Film width (mm)", "film-width", self._set_film, "Of the exposed area")
-            self._film_height = self._number("Film height (mm)", "film-height", self._set_film, "Of the exposed area")
+            self._film_width = self._number(
+                "Film width (mm)", "film-width", self._set_film, "Width of the exposed area"
+            )
+            self._film_height = self._number(
+                "Film height (mm)", "film-height", self._set_film, "Height of the exposed area"
+            )
         with ui.row().classes("items-center w-full no-wrap"):
             self._blades = self._number("Aperture blades", "blades", self._set_iris, "0 for a round aperture")
             self._rounding = self._number(
@@ -138,7 +150,7 @@ class CameraPanel:
             )
 
     def update(self) -> None:
-        """On the server's loop."""
+        """Shows the bench's current settings. On the server's loop."""
         now = self._bench.controls
         positions = now.lens.zoom_positions
         self._position.set_visibility(bool(positions))
@@ -183,7 +195,7 @@ class CameraPanel:
         self._rotation.set_value(round(now.lens.iris_rotation_deg, 6))
 
     def show_sharp_range(self, sharp: SharpRange) -> None:
-        """On the server's loop."""
+        """Shows the depth of field; nan if nothing is sharp. On the server's loop."""
         self._sharp = sharp
         self._show_scale()
 
@@ -210,8 +222,8 @@ class CameraPanel:
         return self._run(self._bench.set_zoom, zoom, ("zoom", self._zoom.gesture))
 
     def _set_focus(self, step: int) -> Awaitable[Any]:
-        share = step / _FOCUS_STEPS
-        return self._change(focus_m=math.inf if share >= 1 else self._nearest_m / (1 - share))
+        fraction = step / _FOCUS_STEPS
+        return self._change(focus_m=math.inf if fraction >= 1 else self._nearest_m / (1 - fraction))
 
     def _set_aperture(self, step: int) -> Awaitable[Any]:
         values = self._bench.apertures.values
@@ -245,6 +257,8 @@ class CameraPanel:
         return self._run(self._bench.change, **changes)
 
     def _ring(self, name: str, help: str, act: Callable[[int], Awaitable[Any]]) -> RingSlider:
+        """Adds a slider. act: sets the bench to a step of the slider."""
+
         async def turned(step: int) -> None:
             await act(step)
             self.update()
@@ -262,6 +276,7 @@ class CameraPanel:
         return field
 
     def _choice(self, name: str, options: dict[Any, str], act: Callable[[Any], Awaitable[Any]], help: str) -> ui.select:
+        """Adds a drop-down list. options: texts by value. act: called with the chosen value."""
         choice = ui.select(options, label=name).classes("w-full").props(f'data-testid="{name.lower()}"')
         choice.tooltip(help)
 
@@ -279,9 +294,11 @@ def _typed(field: ui.number) -> float | None:
 
 
 def _value(event: GenericEventArguments) -> Any:
+    """The value of a Vue event, whose arguments may be a list."""
     return event.args[0] if isinstance(event.args, list) and event.args else event.args
 
 
 def _seconds(ring: Ring, value: float) -> str:
+    """Text of an exposure time: the engraving, or a fraction below 0.1 s."""
     text = ring.text_of(value)
     return f"{text} s" if "/" in text or float(text) >= 0.1 else f"1/{1 / value:.3g} s"

@@ -16,27 +16,36 @@ from ...fields import angle_of_height
 
 # Available plots, by their names in `realcam lens plot`: title, and explanation for the user.
 PLOTS = {
-    "spot": ("Spot diagram", "Where the rays of one object point meet the film; a perfect lens would make a dot."),
-    "ray-fan": ("Ray fan", "How far each ray lands from the chief ray, by where it crosses the stop."),
-    "mtf": ("MTF", "The contrast that is left of stripes, by how fine they are on the film."),
-    "distortion": ("Distortion", "How much farther out points appear than in a picture with straight lines."),
-    "relative-illumination": ("Relative illumination", "How dark the picture becomes towards its corner."),
-    "pupil": ("Pupil shapes", "The outline of the light as the film sees it: cat's eyes towards the corner."),
+    "spot": (
+        "Spot diagram",
+        "Points at which the rays of one object point reach the film; for a perfect lens they coincide.",
+    ),
+    "ray-fan": ("Ray fan", "Distance of each ray from the chief ray on the film, over its height in the stop."),
+    "mtf": ("MTF", "Contrast of line patterns in the image, over their frequency on the film."),
+    "distortion": ("Distortion", "Displacement of points from their positions in a picture without distortion."),
+    "relative-illumination": (
+        "Relative illumination",
+        "Illuminance of the film towards its corner, relative to the centre.",
+    ),
+    "pupil": ("Pupil shapes", "Outline of the exit pupil seen from the film: cat's eyes towards the corner."),
 }
 # Plots for lenses without rotational symmetry.
 MAPS = {
-    "spot-map": ("Spot sizes", "How far from each other the rays of one object point land, over the film."),
-    "mtf-x-map": ("Contrast across", "The contrast that is left of upright stripes, over the film."),
-    "mtf-y-map": ("Contrast upright", "The contrast that is left of level stripes, over the film."),
-    "distortion-map": ("Distortion map", "How far points appear from where a picture with straight lines has them."),
-    "illumination-map": ("Illumination", "How dark the picture becomes towards its corners."),
+    "spot-map": ("Spot sizes", "RMS radius of the spots of object points, over the film."),
+    "mtf-x-map": ("Contrast across", "Contrast of vertical line patterns in the image, over the film."),
+    "mtf-y-map": ("Contrast upright", "Contrast of horizontal line patterns in the image, over the film."),
+    "distortion-map": (
+        "Distortion map",
+        "Displacement of points from their positions in a picture without distortion.",
+    ),
+    "illumination-map": ("Illumination", "Illuminance over the film, relative to the centre."),
 }
-_OF_ONE_FIELD = ("spot", "ray-fan", "mtf")
+_SINGLE_FIELD_PLOTS = ("spot", "ray-fan", "mtf")
 
 
 @dataclass(frozen=True)
-class Look:
-    """Arguments of a plot. height_mm: distance of the film point from the axis."""
+class PlotRequest:
+    """Arguments of a plot. kind: a key of PLOTS or MAPS. height_mm: distance of the film point from the axis."""
 
     kind: str
     lens: Lens
@@ -48,14 +57,14 @@ def plots_of(lens: Lens) -> dict[str, tuple[str, str]]:
     return PLOTS if lens.is_rotational else MAPS
 
 
-def plot_svg(look: Look) -> str:
+def plot_svg(request: PlotRequest) -> str:
     """Returns the plot as SVG with CSS colours of the page. Raises InputError if there is nothing to plot."""
     fields = None
-    if look.kind in _OF_ONE_FIELD:
-        fields = np.array([angle_of_height(look.lens, look.height_mm)[0]])
-    bundles = Bundles(look.lens)
-    data = kinds.compute(look.kind, kinds.Asked(look.lens, bundles, fields))
-    figure = analysis.plot_figure(look.kind, data, size="small")
+    if request.kind in _SINGLE_FIELD_PLOTS:
+        fields = np.array([angle_of_height(request.lens, request.height_mm)[0]])
+    bundles = Bundles(request.lens)
+    data = kinds.compute(request.kind, kinds.Asked(request.lens, bundles, fields))
+    figure = analysis.plot_figure(request.kind, data, size="small")
     content = io.StringIO()
     figure.savefig(content, format="svg", facecolor="none", transparent=True)
     svg = content.getvalue()

@@ -16,7 +16,7 @@ from .lens_cards import lens_cards
 
 
 class PictureCanvas(Element, component="static/picture_canvas.js"):
-    """The streamed picture. Emits "picked" with the u and v that the user clicked."""
+    """The streamed picture. Emits "picked" with the u and v that the user clicked. path: of the window's WebSocket."""
 
     def __init__(self, path: str) -> None:
         super().__init__()
@@ -24,7 +24,7 @@ class PictureCanvas(Element, component="static/picture_canvas.js"):
 
 
 class LensDrawing(Element, component="static/lens_drawing.js"):
-    """Section of the lens, and table of its surfaces."""
+    """Section of the lens, and table of its surfaces. path: of the window's WebSocket."""
 
     def __init__(self, path: str) -> None:
         super().__init__()
@@ -48,12 +48,12 @@ class TabbedPanels(Element, component="static/tabbed_panels.js"):
         super().__init__()
         self._props["names"] = list(names)
         self.shown = names[0]
-        self.on("shown", self._take_shown)
+        self.on("shown", self._store_shown)
 
     def panel(self, name: str) -> Slot:
         return self.add_slot(name)
 
-    def _take_shown(self, event: GenericEventArguments) -> None:
+    def _store_shown(self, event: GenericEventArguments) -> None:
         self.shown = event.args
 
 
@@ -73,15 +73,15 @@ class RingSlider(Element, component="static/ring.js"):
         self._props |= {"label": label, "help": help, "last": 0, "step": 0, "text": "", "answered": 0}
         self.gesture: object = None
 
-        async def take(event: GenericEventArguments) -> None:
-            asked = event.args if isinstance(event.args, dict) else {}
-            step, turn, self.gesture = asked.get("step"), asked.get("turn"), asked.get("gesture")
+        async def on_turned(event: GenericEventArguments) -> None:
+            arguments = event.args if isinstance(event.args, dict) else {}
+            step, turn, self.gesture = arguments.get("step"), arguments.get("turn"), arguments.get("gesture")
             if isinstance(step, int) and 0 <= step <= self._props["last"]:
                 await turned(step)
             self._props["answered"] = turn
             self.update()
 
-        self.on("turned", take, throttle=0.09)
+        self.on("turned", on_turned, throttle=0.09)
 
     def set(self, step: int, last: int, text: str) -> None:
         """Sets the position. last: the last step. text: label of the position."""
@@ -109,4 +109,5 @@ class CostPanel(Element, component="static/cost_panel.js"):
 
 
 def _switchable() -> list[dict[str, Any]]:
+    """Name and description of each effect with a switch."""
     return [{"name": effect.name, "help": effect.description} for effect in effects() if effect.name in EFFECTS]

@@ -32,6 +32,7 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
     ui.colors(primary="#0b5cad")  # contrast of at least 6 under white text, and as text on the light page
 
     async def run(action: Callable[..., Any], *arguments: Any, **named: Any) -> None:
+        """Performs an action of the bench; shows its errors as notifications."""
         try:
             await window.do(action, *arguments, **named)
         except RealcamError as error:
@@ -42,7 +43,7 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
         ui.space()
         again = ui.button("Start again", color=None).props("outline no-caps").classes("rc-flat")
         again.on("click", js_handler="() => [...window.realcamStreams.values()][0].startAgain()")
-        again.tooltip("Camera, lens and effects as the shot file has them")
+        again.tooltip("Restores camera, lens and effects of the shot file")
         HelpDialog()
         ui.toggle({None: "Auto", False: "Light", True: "Dark"}, value=None).bind_value_to(dark, "value").props(
             'no-caps aria-label="Colours of the page" data-testid="theme"'
@@ -56,6 +57,7 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
             said = ui.label().classes("rc-said").props('aria-live="polite" data-testid="said"')
 
             def say(text: str, is_problem: bool) -> None:
+                """Shows a message above the panels."""
                 said.set_text(text)
                 said.classes(add="rc-problem" if is_problem else "", remove="" if is_problem else "rc-problem")
 
@@ -77,12 +79,12 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
     canvas.on("picked", lambda event: _pick(event, plots))
 
     waiting = False
-    told: dict[str, tuple[bool, ...]] = {"setHistory": (False, False), "setComparison": (False,)}
+    last_arguments: dict[str, tuple[bool, ...]] = {"setHistory": (False, False), "setComparison": (False,)}
 
-    def tell(element: Element, method: str, *values: bool) -> None:
+    def call_if_changed(element: Element, method: str, *values: bool) -> None:
         """Calls a method of a component if its arguments have changed, because each call redraws the component."""
-        if told[method] != values:
-            told[method] = values
+        if last_arguments[method] != values:
+            last_arguments[method] = values
             element.run_method(method, *values)
 
     def update_soon() -> None:
@@ -100,8 +102,8 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
             lens.update()
             save.update()
             plots.update()
-            tell(drawing, "setHistory", bench.history.can_undo, bench.history.can_redo)
-            tell(canvas, "setComparison", bench.comparison.kind != NOTHING)
+            call_if_changed(drawing, "setHistory", bench.history.can_undo, bench.history.can_redo)
+            call_if_changed(canvas, "setComparison", bench.comparison.kind != NOTHING)
 
     bench.listeners.controls = lambda: call_on_loop(loop, update_soon)
     bench.listeners.sharp_range = lambda sharp: call_on_loop(loop, camera.show_sharp_range, sharp)
@@ -110,7 +112,8 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
 
 
 def _pick(event: GenericEventArguments, plots: PlotsPanel) -> None:
-    place = event.args if isinstance(event.args, dict) else {}
-    u, v = place.get("u"), place.get("v")
+    """Passes the picture point that the user clicked to the plots."""
+    point = event.args if isinstance(event.args, dict) else {}
+    u, v = point.get("u"), point.get("v")
     if isinstance(u, int | float) and isinstance(v, int | float) and 0 <= u <= 1 and 0 <= v <= 1:
         plots.pick(float(u), float(v))

@@ -18,8 +18,8 @@ from .elements import LensGallery, show_choice
 from .window import Window
 
 LENS_SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")
-MOST_UPLOADED = 2 * 1024 * 1024  # bytes
-_WANTED = f"a lens file ({' '.join(LENS_SUFFIXES)}) of at most {MOST_UPLOADED >> 20} MiB"
+MAX_UPLOADED = 2 * 1024 * 1024  # bytes
+_EXPECTED_FILE = f"a lens file ({' '.join(LENS_SUFFIXES)}) of at most {MAX_UPLOADED >> 20} MiB"
 
 
 @cache
@@ -51,10 +51,10 @@ class LensPanel:
             LensGallery().on("chosen", self._choose_card)
             # Quasar's upload widget is hidden: its buttons have no accessible names and are nested.
             self._files = ui.upload(
-                max_file_size=MOST_UPLOADED,
+                max_file_size=MAX_UPLOADED,
                 auto_upload=True,
                 on_upload=self._upload,
-                on_rejected=lambda: ui.notify(f"Not opened: expected {_WANTED}", type="negative"),
+                on_rejected=lambda: ui.notify(f"Not opened: expected {_EXPECTED_FILE}", type="negative"),
             )
             self._files.classes("hidden").props(f'accept="{",".join(LENS_SUFFIXES)}" data-testid="upload"')
             opens = ui.button("Open a lens file", color=None).props("no-caps outline").classes("rc-flat")
@@ -68,7 +68,7 @@ class LensPanel:
                     files.pickFiles();
                 }}""",
             )
-            opens.tooltip(f"A lens file of this or another program: {' '.join(LENS_SUFFIXES)}")
+            opens.tooltip(f"Opens a lens file of this or another program: {' '.join(LENS_SUFFIXES)}")
 
     def update(self) -> None:
         """On the server's loop."""
@@ -90,7 +90,7 @@ class LensPanel:
         self._files.reset()
         suffix = Path(event.file.name).suffix.lower()
         if suffix not in LENS_SUFFIXES:
-            self._say(f'"{event.file.name}" is not opened: expected {_WANTED}', True)
+            self._say(f'"{event.file.name}" is not opened: expected {_EXPECTED_FILE}', True)
             return
         name, content = event.file.name, await event.file.read()
         try:

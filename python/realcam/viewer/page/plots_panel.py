@@ -12,10 +12,10 @@ from ..lens_view import height_of
 from ..newest_task import NewestTask
 from ..server.server_loop import call_on_loop
 from ..worker_process import WorkerProcess, WorkError
-from .close_look import PLOTS, Look, plot_svg, plots_of
+from .close_look import PLOTS, PlotRequest, plot_svg, plots_of
 from .window import Window
 
-_LONGEST_S = 120.0  # long enough for a machine that is busy rendering
+_TIMEOUT_S = 120.0  # long enough for a machine that is busy rendering
 #: Process that draws for all windows, so that plots do not block the rendering threads of this one.
 plotter = WorkerProcess()
 
@@ -27,8 +27,8 @@ class PlotsPanel:
         self._bench = window.bench
         self._loop = asyncio.get_running_loop()
         self._task = NewestTask("realcam-plots", quiet_s=0.3)  # during a movement the pictures need the processor
-        self._at = (0.5, 0.5)
-        self._look: Look | None = None
+        self._picture_point = (0.5, 0.5)
+        self._request: PlotRequest | None = None
         self._is_shown = False
         with ui.element("section").props('aria-label="Plots of the lens"'):
             self._kind = ui.select({kind: title for kind, (title, _) in PLOTS.items()}, value="spot", label="Plot")
@@ -52,11 +52,11 @@ class PlotsPanel:
 
     def pick(self, u: float, v: float) -> None:
         """Selects the picture point for plots of a single field."""
-        self._at = u, v
+        self._picture_point = u, v
         self.update()
 
     def update(self) -> None:
-        """On the server's loop."""
+        """Requests a new plot if its arguments have changed. On the server's loop."""
         if not self._is_shown:
             return
         controls = self._bench.controls
@@ -66,31 +66,31 @@ class PlotsPanel:
             self._kind.set_options({kind: title for kind, (title, _) in plots.items()}, value=next(iter(plots)))
         kind = self._kind.value
         self._help.set_text(plots[kind][1])
-        height = height_of(*self._at, controls.film)
+        height = height_of(*self._picture_point, controls.film)
         text = (
             f"The point is {height:.3g} mm from the lens's axis on the film" if lens.is_rotational else "Over the film"
         )
         self._point.set_text(f"{text}, in the plane in focus. Click the picture to choose a point.")
-        look = Look(kind, lens, height)
-        if look != self._look:
-            self._look = look
+        request = PlotRequest(kind, lens, height)
+        if request != self._request:
+            self._request = request
             self._plot.set_content("")
             self._busy.set_visibility(True)
-            self._task.submit(lambda: self._draw(look))
+            self._task.submit(lambda: self._draw(request))
 
-    def _draw(self, look: Look) -> None:
+    def _draw(self, request: PlotRequest) -> None:
         try:
             try:
-                content = plotter.call(plot_svg, look, seconds=_LONGEST_S)
+                content = plotter.call(plot_svg, request, seconds=_TIMEOUT_S)
             except WorkError:  # retries once, as the failure may be unrelated to this plot
-                content = plotter.call(plot_svg, look, seconds=_LONGEST_S)
+                content = plotter.call(plot_svg, request, seconds=_TIMEOUT_S)
         except WorkError as error:
-            content = f'<p class="rc-problem">There is no plot: drawing it {error}</p>'
+            content = f'<p class="rc-problem">There is no plot: drawing {error}</p>'
         except RealcamError as error:
             content = f'<p class="rc-problem">{html.escape(str(error))}</p>'
-        call_on_loop(self._loop, self._show, look, content)
+        call_on_loop(self._loop, self._show, request, content)
 
-    def _show(self, look: Look, content: str) -> None:
-        if look == self._look:
+    def _show(self, request: PlotRequest, content: str) -> None:
+        if request == self._request:
             self._plot.set_content(content)
             self._busy.set_visibility(False)

@@ -36,23 +36,25 @@ class SavePanel:
             self._what.on("update:model-value", self._propose)
         with ui.row().classes("items-center w-full"):
             save = ui.button("Save", on_click=lambda: self._try(self._save)).props('no-caps data-testid="save"')
-            save.tooltip(f"As it is now, in {folders.first} or another folder that the lens bench was started with")
+            save.tooltip(f"Saves to {folders.first}, or to another folder that the lens bench was started with")
             download = ui.button("Download", color=None).props('no-caps outline data-testid="download"')
             download.classes("rc-flat").on("click", lambda: self._try(self._download))
-            download.tooltip("As it is now, to where the browser keeps its downloads")
+            download.tooltip("Saves to the browser's download folder")
         with ui.row().classes("items-center w-full") as refined:
             self._refine = ui.button(on_click=lambda: self._try(self._save_refined), color=None)
             self._refine.props('no-caps outline data-testid="save-refined"').classes("rc-flat")
-            self._refine.tooltip("Waits until the noise is what Refine to says (panel Camera), and saves then")
+            self._refine.tooltip(
+                'Waits until the picture has the noise of "Refine to" (panel Camera), and saves it then'
+            )
             self._time_left = ui.label().props('data-testid="time-left"').classes("rc-note")
         refined.bind_visibility_from(self._what, "value", lambda what: what == "picture")
-        note = ui.label("A picture is saved as you see it now, with all its pixels.").classes("rc-note")
+        note = ui.label("A picture is saved as it is shown now, at full resolution.").classes("rc-note")
         note.bind_visibility_from(self._what, "value", lambda what: what == "picture")
         self.update()
         ui.timer(1.0, self.update)
 
     def update(self) -> None:
-        """On the server's loop."""
+        """Shows the bench's noise goal and the remaining time. On the server's loop."""
         self._refine.set_text(f"Save to {grey_levels(self._bench.noise_codes)}")
         self._time_left.set_text(f"Time left: {self._bench.time_left}")
 
@@ -60,6 +62,7 @@ class SavePanel:
         self._name.set_value(_PROPOSED.get(self._what.value, ""))
 
     async def _try(self, action: Callable[[str, str], Any]) -> None:
+        """Calls an action with the kind of content and the file name; shows its errors as messages."""
         name, what = self._name.value, self._what.value
         try:
             if not isinstance(name, str) or what not in _PROPOSED:
@@ -73,6 +76,8 @@ class SavePanel:
         await self._save(what, name, is_refined=True)
 
     async def _save(self, what: str, name: str, *, is_refined: bool = False) -> None:
+        """Saves a picture, shot or lens. is_refined: waits first until the picture is refined. Raises RealcamError and
+        OSError."""
         path = self._folders.inside(name)
         contents, left_out = (None, []) if what == "picture" else await self._window.do(self._contents, what, path)
         # Additional files are checked like the one that was named: they could be links that lead out of the folders.
@@ -88,14 +93,14 @@ class SavePanel:
             contents = {path: await self._picture(name)}
         if await self._write({target: contents[file] for target, file in targets.items()}, agreed):
             names = " and ".join(target.name for target in targets)
-            self._say("; ".join([f"Wrote {names}", *(f"not in it: {part}" for part in left_out)]), False)
+            self._say("; ".join([f"Wrote {names}", *(f"omitted: {part}" for part in left_out)]), False)
 
     async def _agree(self, targets: Any, agreed: set[Path]) -> bool:
         """Asks whether existing files not yet agreed to may be replaced. Returns false if not. Raises OSError."""
-        there = [target for target in targets if target not in agreed and target.exists()]
-        if there and not await _answer(" ".join(f"{target.name} is there already." for target in there)):
+        existing = [target for target in targets if target not in agreed and target.exists()]
+        if existing and not await _answer(" ".join(f"{target.name} exists already." for target in existing)):
             return False
-        agreed.update(there)
+        agreed.update(existing)
         return True
 
     async def _write(self, contents: dict[Path, bytes], agreed: set[Path]) -> bool:
@@ -130,7 +135,7 @@ class SavePanel:
             contents, left_out = await self._window.do(self._contents, what, path)
         for file, content in contents.items():
             ui.download.content(content, file.name)
-        self._say("; ".join([f"Downloaded {path.name}", *(f"not in it: {part}" for part in left_out)]), False)
+        self._say("; ".join([f"Downloaded {path.name}", *(f"omitted: {part}" for part in left_out)]), False)
 
     def _contents(self, what: str, path: Path) -> tuple[dict[Path, bytes], list[str]]:
         """Returns file contents of a shot or a lens, and the properties that the format cannot express."""
@@ -138,7 +143,7 @@ class SavePanel:
         if what == "lens":
             content, left_out = lens_content(bench.controls.set_lens, path.name)
             return {path: content}, left_out
-        effects = bench.switches.of_model(bench.controls.model).as_words()
+        effects = bench.switches.restricted_to_model(bench.controls.model).as_specs()
         return shot_contents(self._source, bench.controls, effects, path), []
 
     async def _picture(self, name: str) -> bytes:
@@ -175,10 +180,10 @@ class SavePanel:
             raise InputError("not saved")
 
 
-async def _answer(question: str) -> bool:
-    """Asks the user whether files may be replaced."""
+async def _answer(statement: str) -> bool:
+    """Shows a statement that files exist. Returns true if the user allows to replace them."""
     with ui.dialog() as dialog, ui.card():
-        ui.label(question)
+        ui.label(statement)
         with ui.row():
             ui.button("Replace it", on_click=lambda: dialog.submit(True)).props("no-caps")
             ui.button("Keep it", on_click=lambda: dialog.submit(False), color=None).props("no-caps flat autofocus")

@@ -16,10 +16,11 @@ class FrameEncoder:
     """Encodes on its own thread, one frame at a time, so that frames stay in order."""
 
     def __init__(self, on_frame: Callable[[Frame], None]) -> None:
+        """on_frame: called on the encoder's thread."""
         self._on_frame = on_frame
         self._executor = ThreadPoolExecutor(1, "realcam-jpeg")
         self._encoding: Future[None] | None = None
-        self.quality = 85
+        self.quality = 85  #: JPEG quality, 0 to 100
 
     def submit(self, codes: NDArray[np.uint8], frame_of: Callable[..., Frame]) -> None:
         """Encodes a frame after waiting for the previous one. frame_of: returns the Frame for its jpeg and
@@ -27,12 +28,13 @@ class FrameEncoder:
 
         Raises RuntimeError if the program is ending.
         """
-        before, self._encoding = self._encoding, None
-        if before:
-            before.result()
+        previous, self._encoding = self._encoding, None
+        if previous:
+            previous.result()
         self._encoding = self._executor.submit(self._encode, codes, frame_of)
 
     def close(self) -> None:
+        """Waits for the last frame, and ends the thread."""
         self._executor.shutdown()
 
     def _encode(self, codes: NDArray[np.uint8], frame_of: Callable[..., Frame]) -> None:

@@ -37,11 +37,11 @@ def point_at(
     to the picture's."""
     height, width = depth_m.shape
     row, column = min(int(v * height), height - 1), min(int(u * width), width - 1)
-    reach = max(1, round(0.5 * spot * width))
-    around = np.s_[max(0, row - reach) : row + reach + 1, max(0, column - reach) : column + reach + 1]
-    near = depth_m[max(0, row - 1) : row + 2, max(0, column - 1) : column + 2]
-    met = near[np.isfinite(near)]
+    radius = max(1, round(0.5 * spot * width))
+    spot_pixels = np.s_[max(0, row - radius) : row + radius + 1, max(0, column - radius) : column + radius + 1]
+    depths_m = depth_m[max(0, row - 1) : row + 2, max(0, column - 1) : column + 2]
+    hits_m = depths_m[np.isfinite(depths_m)]
     return Point(
-        distance_m=float(np.median(met)) if met.size else math.inf,
-        illuminance_lx=float(np.mean(exposure_lx_s[around] @ _LUMINANCE)) / exposure_time_s,
+        distance_m=float(np.median(hits_m)) if hits_m.size else math.inf,
+        illuminance_lx=float(np.mean(exposure_lx_s[spot_pixels] @ _LUMINANCE)) / exposure_time_s,
     )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..._core import develop
 
-_TILES = 16
+_TILES = 16  # tiles of the picture along each side
 _ROUNDING = 1 / 6  # variance of the difference of two rounded 8-bit codes
 
 
@@ -62,13 +62,14 @@ class NoiseMeasurement:
         return rows
 
     def _squares(self, exposure_time_s: float, iso: float, tone: str) -> NDArray[np.float32] | None:
-        """Estimates of the variance, (height, width, 3); some are negative."""
+        """Estimates of the variance of each pixel in 8-bit codes, (height, width, 3); some are negative. None: too few
+        samples."""
         if self._newest is None or len(self._doublings) < 2:
             return None
-        (samples, before), (all_samples, after) = self._doublings[0], self._newest
+        (samples, earlier), (all_samples, newest) = self._doublings[0], self._newest
         codes = [
             develop(illuminance * np.float32(exposure_time_s), iso, tone).astype(np.float32)
-            for illuminance in (before, after)
+            for illuminance in (earlier, newest)
         ]
         squares: NDArray[np.float32] = ((codes[1] - codes[0]) ** 2 - _ROUNDING) * (samples / (all_samples - samples))
         return squares

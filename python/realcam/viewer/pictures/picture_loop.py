@@ -34,14 +34,18 @@ _RESTING_S, _MOVING_S = 0.025, 0.15
 
 @dataclass(frozen=True)
 class _Pending:
+    """The newest request that has not been begun."""
+
     request: PictureRequest
     serial: int
-    begun: float
+    begun: float  #: time.perf_counter() when it was submitted
 
 
 @dataclass(frozen=True)
 class _Question:
-    ask: Callable[[], Any]
+    """A question about the picture, which the loop's thread answers."""
+
+    ask: Callable[[], Any]  #: returns the answer
     answer: Future[Any]
     needs_samples: bool  #: the question must wait for the frame in progress
 
@@ -86,7 +90,7 @@ class PictureLoop:
             picture = self._picture
             self._wake.notify()
             if self._refines and picture and not picture.request.is_same_view(request):
-                picture.is_given_up = True
+                picture.is_cancelled = True
                 self._live.cancel()  # under the lock, so that the other thread is still in the frame to be cancelled
         return serial
 
@@ -104,11 +108,12 @@ class PictureLoop:
         self._encoder.quality = quality
 
     def image(self) -> Future[Image]:
-        """The picture as shown, denoised or not, at full resolution."""
+        """The picture as shown, denoised or not, at full resolution. The future raises InputError or Cancelled."""
         return self._ask(self._image, True)
 
     def point(self, u: float, v: float) -> Future[Point]:
-        """Distance and illuminance at u, v (0 to 1, from the upper left corner)."""
+        """Distance and illuminance at u, v (0 to 1, from the upper left corner). The future raises InputError or
+        Cancelled."""
         return self._ask(lambda: self._point(u, v), False)
 
     def close(self) -> None:
@@ -153,25 +158,26 @@ class PictureLoop:
                     self._pending = self._pending or pending
             except RealcamError as error:
                 with self._wake:
-                    is_given_up = pending is None and self._pending is not None
-                if not is_given_up:  # a frame that was complete when it was cancelled has lost its samples
+                    is_cancelled = pending is None and self._pending is not None
+                if not is_cancelled:  # a frame that was complete when it was cancelled has lost its samples
                     self._fail(pending, str(error))
             except Exception:
-                _log.exception("the picture could not be taken")
-                self._fail(pending, "the picture could not be taken; the server's log says more")
+                _log.exception("the picture could not be rendered")
+                self._fail(pending, "the picture could not be rendered; see the server's log")
         while self._questions:
             self._questions.popleft().answer.set_exception(Cancelled("the window is closed"))
 
     def _wait_for_work(self) -> bool:
+        """Waits for a request, a question, or the time to refine the picture. Returns false if the loop is closed."""
         with self._wake:
             while not self._is_closed:
                 if self._pending or self._questions:
                     return True
                 if self._picture and not self._picture.is_final:
-                    resting = self._picture.refines_from - time.perf_counter()
-                    if resting <= 0:
+                    pause_s = self._picture.refine_after - time.perf_counter()
+                    if pause_s <= 0:
                         return True
-                    self._wake.wait(resting)
+                    self._wake.wait(pause_s)
                 else:
                     self._wake.wait()
         return False
@@ -180,12 +186,13 @@ class PictureLoop:
         """Removes and returns the questions that can be answered now: none while a newer request is pending, because
         questions refer to the newest picture."""
         with self._wake:
-            now = [] if self._pending else list(self._questions)
-            for question in now:
+            answerable = [] if self._pending else list(self._questions)
+            for question in answerable:
                 self._questions.remove(question)
-        return now
+        return answerable
 
     def _answer(self, question: _Question) -> None:
+        """Answers a question, unless its future was cancelled."""
         if not (question.answer.running() or question.answer.set_running_or_notify_cancel()):
             return
         try:
@@ -201,6 +208,7 @@ class PictureLoop:
             question.answer.set_exception(error)
 
     def _fail(self, pending: _Pending | None, message: str) -> None:
+        """Discards the picture, and reports the error for the pending request or for the picture."""
         serial = pending.serial if pending else self._picture.serial if self._picture else 0
         self._picture = None
         if self._is_closed:
@@ -208,12 +216,13 @@ class PictureLoop:
         self._on_error(serial, message)
 
     def _begin(self, pending: _Pending) -> None:
+        """Shows the first frame of a request: existing samples if they apply to it, otherwise a new preview."""
         request = pending.request
         picture = self._picture
-        if picture and picture.samples and picture.can_be(request):
+        if picture and picture.samples and picture.can_be_developed_for(request):
             self._develop_for(picture, pending)
             return
-        has_samples = picture and not picture.is_given_up and (picture.samples or picture.kept)
+        has_samples = picture and not picture.is_cancelled and (picture.samples or picture.stored_arrays)
         if picture and has_samples and picture.request.is_same_view(request):
             self._picture = self._taker.with_other_settings(picture, request, pending.serial)
             return
@@ -221,7 +230,7 @@ class PictureLoop:
         codes = self._taker.shoot(picture, self._taker.pace.first_spp(picture.size))
         is_moving = pending.begun - self._begun < _MOVING_S
         self._begun = pending.begun
-        picture.refines_from = time.perf_counter() + (_MOVING_S if is_moving else _RESTING_S)
+        picture.refine_after = time.perf_counter() + (_MOVING_S if is_moving else _RESTING_S)
         if request.is_automatic and self._taker.meter(picture):
             codes = self._taker.developed(picture)
         self._show(picture, codes, is_hurried=True)
@@ -230,16 +239,16 @@ class PictureLoop:
         """Renders the next refining frame: at the next resolution, or with further samples."""
         start = time.perf_counter()
         request, pace = picture.request, self._taker.pace
-        is_new_size = picture.size != picture.whole
+        is_new_size = picture.size != picture.full_size
         if is_new_size:
-            picture.size = pace.next_size(picture.size, picture.whole)
+            picture.size = pace.next_size(picture.size, picture.full_size)
         samples = 0 if is_new_size else picture.samples
         spp = min(pace.refining_spp(picture.size, samples), max(1, request.max_spp - samples))
-        lacking = picture.expected_samples() - samples
-        if lacking < spp:
-            spp = min(spp, max(1, samples // 32, math.ceil(lacking)))
-        if picture.kept is None and pace.is_slow(spp, picture.size):
-            self._taker.keep(picture)
+        remaining = picture.expected_samples() - samples
+        if remaining < spp:
+            spp = min(spp, max(1, samples // 32, math.ceil(remaining)))
+        if picture.stored_arrays is None and pace.is_slow(spp, picture.size):
+            self._taker.store_arrays(picture)
         with self._wake:
             if self._pending:
                 return
@@ -252,7 +261,7 @@ class PictureLoop:
         finally:
             with self._wake:
                 self._refines = False
-        if picture.size == picture.whole:
+        if picture.size == picture.full_size:
             self._taker.measure_noise(picture)
         if request.is_automatic and picture.samples <= 2 * spp and self._taker.meter(picture):
             self._show(picture, self._taker.developed(picture))
@@ -266,13 +275,15 @@ class PictureLoop:
         while not frame.ready:
             with self._wake:
                 self._wake.wait(0.005)
-                pending = self._pending if self._pending and picture.can_be(self._pending.request) else None
+                pending = (
+                    self._pending if self._pending and picture.can_be_developed_for(self._pending.request) else None
+                )
                 if pending:
                     self._pending = None
-                quick = [] if self._pending else [q for q in self._questions if not q.needs_samples]
-                for question in quick:
+                answerable = [] if self._pending else [q for q in self._questions if not q.needs_samples]
+                for question in answerable:
                     self._questions.remove(question)
-            for question in quick:
+            for question in answerable:
                 self._answer(question)
             if pending:
                 self._develop_for(picture, pending, is_free=False)
@@ -280,18 +291,18 @@ class PictureLoop:
     def _develop_for(self, picture: GrowingPicture, pending: _Pending, *, is_free: bool = True) -> None:
         """Develops the existing samples for a new request. is_free: true if no frame is in progress."""
         request = pending.request
-        is_as_before = request == picture.request
+        is_unchanged = request == picture.request
         picture.request, picture.serial, picture.begun = request, pending.serial, pending.begun
         if request.is_automatic:
             self._taker.meter(picture)
-        if is_as_before:
+        if is_unchanged:
             self._show(picture, self._taker.developed(picture))
             return
         # Shows the picture first, because measuring its noise develops two more pictures.
         picture.noise_codes = picture.noise_tiles = None
         picture.is_final = picture.is_good_enough()
         self._show(picture, self._taker.developed(picture), is_free=is_free)
-        picture.tell_noise(self._taker.camera(picture).exposure_time_s)
+        picture.update_noise(self._taker.camera(picture).exposure_time_s)
         if picture.is_good_enough() and not picture.is_final:
             picture.is_final = True
             self._show(picture, self._taker.developed(picture))
@@ -300,7 +311,7 @@ class PictureLoop:
         picture = self._picture
         if picture is None:
             raise InputError("there is no picture yet")
-        while picture.size != picture.whole or not picture.samples:
+        while picture.size != picture.full_size or not picture.samples:
             self._refine(picture)
             if self._pending:
                 raise Cancelled("another picture was requested")
@@ -309,7 +320,7 @@ class PictureLoop:
     def _point(self, u: float, v: float) -> Point:
         picture = self._picture
         # During the first frame at a higher resolution there are no samples, and the previous frame is kept.
-        if picture is None or not (picture.samples or picture.kept):
+        if picture is None or not (picture.samples or picture.stored_arrays):
             raise InputError("there is no picture yet")
         return point_at(u, v, *self._taker.arrays(picture), picture.exposure_time_s)
 
@@ -326,12 +337,17 @@ class PictureLoop:
         is_free: bool = True,
         is_hurried: bool = False,
     ) -> None:
+        """Encodes a frame of the picture for the page, denoised if requested.
+
+        codes: the picture without denoising, 8-bit. is_free: true if no frame is in progress. is_hurried: true for the
+        first frame of a change, which is denoised only if that is fast enough.
+        """
         is_denoised = self._is_denoised(picture)
         if is_denoised:
-            without_noise = self._taker.without_noise(picture, is_free=is_free, is_hurried=is_hurried)
+            denoised_codes = self._taker.developed_denoised(picture, is_free=is_free, is_hurried=is_hurried)
             is_denoised = picture.denoised_lx is not None
-            if without_noise is not None:
-                codes = without_noise
+            if denoised_codes is not None:
+                codes = denoised_codes
             elif is_denoised:
                 return  # the previous frame remains
         frame_of = picture.frame_of(codes, self._taker.camera(picture).exposure_time_s, is_denoised)

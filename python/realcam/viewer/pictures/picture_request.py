@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from ..._core import Camera, RenderSettings, RenderStats
 
-MOST_SPP = 4096  # samples per pixel at which refinement ends regardless of the noise
+MAX_SPP = 4096  # samples per pixel at which refinement ends regardless of the noise
 
 
 @dataclass(frozen=True)
@@ -16,10 +16,10 @@ class PictureRequest:
     camera: Camera
     settings: RenderSettings = field(default_factory=lambda: RenderSettings(effects=(), max_bounces=1))
     tone: str = "film"
-    is_automatic: bool = False  #: the exposure time follows the light
+    is_automatic: bool = False  #: automatic exposure sets the exposure time
     compensation_ev: float = 0.0
     noise_codes: float = 1.0  #: RMS noise in 8-bit codes to which the picture is refined
-    max_spp: int = MOST_SPP
+    max_spp: int = MAX_SPP
     denoises: bool = False  #: frames are denoised, except for the final one
 
     def is_same_view(self, other: PictureRequest) -> bool:
@@ -34,7 +34,7 @@ class PictureRequest:
 
 @dataclass(frozen=True)
 class Costs:
-    """Time and rays of a picture, by stage."""
+    """Time and rays of a picture. Shares are fractions of its render time."""
 
     lens_share: float
     scene_share: float

@@ -26,10 +26,11 @@ _FEW_PIXELS = 50_000  # up to this number, developing here is faster than one mo
 
 
 class PictureTaker:
-    """Works on one thread; the metered exposure time is retained from picture to picture.
+    """Adds samples to pictures, meters, denoises and develops them. For use on one thread.
 
+    The metered exposure time is retained from picture to picture.
     wait_for: called with a slow frame in progress, while the previous one is kept; returns when the frame is ready.
-    is_wanted: returns false to cancel denoising, because the picture is obsolete.
+    is_wanted: returns false to cancel denoising, because the picture is obsolete. device: of the denoiser.
     """
 
     def __init__(
@@ -55,32 +56,33 @@ class PictureTaker:
         """Returns a picture of the same view with other settings, at the resolution of the one shown, whose samples it
         uses until its own first ones are rendered."""
         new = replace(self.new_picture(request, serial, time.perf_counter()), size=picture.size)
-        new.kept, new.exposure_time_s = self.arrays(picture), picture.exposure_time_s
+        new.stored_arrays, new.exposure_time_s = self.arrays(picture), picture.exposure_time_s
         new.denoised_lx = picture.denoised_lx
         return new
 
     def camera(self, picture: GrowingPicture) -> Camera:
+        """The camera at the picture's resolution, with the metered exposure time under automatic exposure."""
         return picture.camera(self._metered_s)
 
     def shoot(self, picture: GrowingPicture, spp: int) -> NDArray[np.uint8]:
-        """Adds samples, and returns all samples developed with the current exposure."""
+        """Adds spp samples per pixel, and returns all samples developed with the current exposure, 8-bit."""
         request, camera = picture.request, self.camera(picture)
         start = time.perf_counter()
         frame = self._live.shoot(camera, picture.settings(), spp=spp, tone=request.tone)
-        if picture.kept:
+        if picture.stored_arrays:
             self._wait_for(frame, picture)
         codes = frame.codes
         seconds = max(time.perf_counter() - start, 1e-6)
-        self.pace.took(spp * math.prod(picture.size), seconds, is_first=picture.samples == 0)
+        self.pace.record(spp * math.prod(picture.size), seconds, is_first=picture.samples == 0)
         picture.spent_s += seconds
         picture.samples, picture.exposure_time_s = frame.samples, camera.exposure_time_s
-        picture.kept = self._live_arrays() if self.pace.was_slow(seconds) else None
-        is_as_wanted = picture.request is request  # the exposure may have been changed during this frame
-        return codes if is_as_wanted else self._developed_here(picture)
+        picture.stored_arrays = self._live_arrays() if self.pace.was_slow(seconds) else None
+        # The exposure may have been changed during this frame.
+        return codes if picture.request is request else self._developed_here(picture)
 
-    def keep(self, picture: GrowingPicture) -> None:
+    def store_arrays(self, picture: GrowingPicture) -> None:
         """Stores the last frame, for use during a slow one."""
-        picture.kept = self._live_arrays()
+        picture.stored_arrays = self._live_arrays()
 
     def meter(self, picture: GrowingPicture) -> bool:
         """Meters the picture and sets the exposure time. Returns true if the change is visible."""
@@ -88,18 +90,18 @@ class PictureTaker:
         mean = metered_exposure_lx_s(exposure)
         if not (mean > 0 and math.isfinite(mean)):
             return False
-        before = picture.exposure_time_s
-        wanted = middle_grey_lx_s(picture.request.camera.iso, picture.request.compensation_ev)
-        self._metered_s = min(max(before * wanted / mean, 1e-6), 1e4)
-        return abs(math.log2(self._metered_s / before)) > 0.02
+        previous_s = picture.exposure_time_s
+        middle_grey = middle_grey_lx_s(picture.request.camera.iso, picture.request.compensation_ev)
+        self._metered_s = min(max(previous_s * middle_grey / mean, 1e-6), 1e4)
+        return abs(math.log2(self._metered_s / previous_s)) > 0.02
 
     def developed(self, picture: GrowingPicture) -> NDArray[np.uint8]:
         """Returns the existing samples developed with the current exposure."""
-        if not picture.kept and math.prod(picture.size) > _FEW_PIXELS:
+        if not picture.stored_arrays and math.prod(picture.size) > _FEW_PIXELS:
             return self.shoot(picture, 1)  # the device takes a sample and develops in less time
         return self._developed_here(picture)
 
-    def without_noise(
+    def developed_denoised(
         self, picture: GrowingPicture, *, is_free: bool, is_hurried: bool = False
     ) -> NDArray[np.uint8] | None:
         """Denoises and develops the existing samples. is_free: true if no frame is in progress, for which denoising
@@ -107,8 +109,8 @@ class PictureTaker:
 
         Returns None if there is nothing new to show or no time for it. Raises Cancelled if the picture is obsolete.
         """
-        is_new = picture.denoised_of != picture.size
-        is_quick = not is_hurried or self._denoiser.foreseen_s(picture.size) < _FIRST_FRAME_S - picture.spent_s
+        is_new = picture.denoised_size != picture.size
+        is_quick = not is_hurried or self._denoiser.expected_s(picture.size) < _FIRST_FRAME_S - picture.spent_s
         if is_free and is_quick and (is_new or self._denoiser.is_due):
             # The first frame of a change is always shown, even if it is already obsolete.
             self._denoise(picture, (lambda: True) if is_hurried else self._is_wanted)
@@ -122,7 +124,7 @@ class PictureTaker:
     def _denoise(self, picture: GrowingPicture, is_wanted: Callable[[], bool]) -> None:
         image = self._denoiser.denoised(lambda: self._live.image(GUIDES), is_wanted)
         picture.denoised_lx = image.pixels / np.float32(image.camera.exposure_time_s)
-        picture.denoised_of = picture.size
+        picture.denoised_size = picture.size
 
     @cached_property
     def _denoiser(self) -> PreviewDenoiser:
@@ -133,7 +135,7 @@ class PictureTaker:
         if picture.wants_measurement():
             exposure, _ = self.arrays(picture)
             picture.noise.add(picture.samples, exposure / np.float32(picture.exposure_time_s))
-            picture.tell_noise(self.camera(picture).exposure_time_s)
+            picture.update_noise(self.camera(picture).exposure_time_s)
             if picture.noise_codes is not None:
                 picture.costs = Costs.of(self._live.image().stats, picture.spent_s)
         picture.is_final = picture.is_good_enough()
@@ -143,7 +145,7 @@ class PictureTaker:
         denoised picture. Raises Cancelled if the picture is obsolete."""
         image, camera = self._live.image(), self.camera(picture)
         if is_denoised:
-            if picture.denoised_of != picture.size:
+            if picture.denoised_size != picture.size:
                 self._denoise(picture, self._is_wanted)
             assert picture.denoised_lx is not None
             pixels = picture.denoised_lx * np.float32(camera.exposure_time_s)
@@ -152,9 +154,11 @@ class PictureTaker:
         return replace(image, pixels=image.pixels * ratio, camera=camera)
 
     def arrays(self, picture: GrowingPicture) -> Arrays:
-        return picture.kept or self._live_arrays()
+        """Exposure (lx s) and depth (m) of the picture's samples."""
+        return picture.stored_arrays or self._live_arrays()
 
     def _developed_here(self, picture: GrowingPicture) -> NDArray[np.uint8]:
+        """Develops the existing samples on the CPU."""
         exposure, _ = self.arrays(picture)
         ratio = self.camera(picture).exposure_time_s / picture.exposure_time_s
         return develop(exposure * np.float32(ratio), picture.request.camera.iso, picture.request.tone)

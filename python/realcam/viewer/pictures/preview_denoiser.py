@@ -47,17 +47,17 @@ class PreviewDenoiser:
         now = time.perf_counter()
         return (self._ended - self._began) / max(now - self._began, 1e-9) <= _SHARE
 
-    def foreseen_s(self, size: Size) -> float:
+    def expected_s(self, size: Size) -> float:
         """Expected time for a picture of this size, including its guide layers, in seconds."""
         return math.prod(size) / statistics.median(self._rates)
 
-    def denoised(self, take: Callable[[], Image], is_wanted: Callable[[], bool] = lambda: True) -> Image:
-        """Returns the denoised image. take: returns an image with the layers GUIDES. is_wanted: polled during the work.
-        Raises Cancelled if it returns False."""
+    def denoised(self, render: Callable[[], Image], is_wanted: Callable[[], bool] = lambda: True) -> Image:
+        """Returns the denoised image. render: returns an image with the layers GUIDES. is_wanted: polled during the
+        work. Raises Cancelled if it returns False."""
         if not is_wanted():
             raise Cancelled("another picture was requested")
         self._began = time.perf_counter()
-        image = take()
+        image = render()
         guides = (image.layers[name] for name in GUIDES)
         exposure = without_noise(self._core, image.pixels, *guides, fast=True, progress=lambda _: is_wanted())
         self._ended = time.perf_counter()

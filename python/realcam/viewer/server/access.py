@@ -56,13 +56,15 @@ class Gate:
         headers = Headers(scope=scope)
         by_query = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
         is_admitted = self._is_admitted(headers, by_query)
-        more = list(_HEADERS)
+        response_headers = list(_HEADERS)
         if is_admitted and self._token and by_query:
-            more.append((b"set-cookie", f"{_COOKIE}={self._token}; HttpOnly; SameSite=Strict; Path=/".encode()))
+            response_headers.append(
+                (b"set-cookie", f"{_COOKIE}={self._token}; HttpOnly; SameSite=Strict; Path=/".encode())
+            )
 
         async def send_with_headers(message: MutableMapping[str, Any]) -> None:
             if message["type"] == "http.response.start":
-                message["headers"] = [*(message.get("headers") or []), *more]
+                message["headers"] = [*(message.get("headers") or []), *response_headers]
             await send(message)
 
         app = self._app if is_admitted else _refuse
@@ -83,11 +85,12 @@ class Gate:
         if self._token is None:
             return "@" not in host and is_local(name)
         cookies = SimpleCookie(headers.get("cookie", ""))
-        given = by_query or (cookies[_COOKIE].value if _COOKIE in cookies else "")
-        return hmac.compare_digest(given.encode(), self._token.encode())
+        token = by_query or (cookies[_COOKIE].value if _COOKIE in cookies else "")
+        return hmac.compare_digest(token.encode(), self._token.encode())
 
 
 async def _refuse(scope: Scope, receive: Receive, send: Send) -> None:
+    """ASGI application that answers with 403, or closes a WebSocket."""
     if scope["type"] == "websocket":
         await send({"type": "websocket.close", "code": 1008})
         return
@@ -96,29 +99,29 @@ async def _refuse(scope: Scope, receive: Receive, send: Send) -> None:
 
 
 class BodyLimit:
-    """ASGI middleware that rejects requests of more than `most` bytes.
+    """ASGI middleware that rejects requests of more than `max_bytes` bytes.
 
     The page's own limit for uploads is enforced only by browsers.
     """
 
-    def __init__(self, app: ASGIApp, most: int) -> None:
-        self._app, self._most = app, most
+    def __init__(self, app: ASGIApp, max_bytes: int) -> None:
+        self._app, self._max_bytes = app, max_bytes
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
         length = Headers(scope=scope).get("content-length", "")
-        if length.isdecimal() and int(length) > self._most:
+        if length.isdecimal() and int(length) > self._max_bytes:
             await PlainTextResponse("realcam: too large\n", status_code=413)(scope, receive, send)
             return
-        taken = 0
+        received = 0
 
         async def counted() -> Message:
-            nonlocal taken
+            nonlocal received
             message = await receive()
-            taken += len(message.get("body", b""))
-            if taken > self._most:
+            received += len(message.get("body", b""))
+            if received > self._max_bytes:
                 raise HTTPException(413)  # raised in the code that reads the request, so that it is answered
             return message
 
@@ -132,14 +135,15 @@ class Folders:
         self._folders = [folder.resolve() for folder in folders]
         for folder in self._folders:
             if not folder.is_dir():
-                raise InputError(f"{folder}: there is no such folder")
+                raise InputError(f"{folder} is not a folder")
 
     @property
     def first(self) -> Path:
+        """Folder at which relative paths start."""
         return self._folders[0]
 
     def files(self, suffixes: Sequence[str]) -> list[Path]:
-        """Files of all folders, without subfolders."""
+        """Files of all folders with one of the suffixes, without subfolders."""
         return sorted(
             path
             for folder in self._folders

@@ -7,7 +7,7 @@ from collections import deque
 
 from .messages import BadMessage, Message, merged
 
-_MOST_CHARACTERS = 1 << 20  # of all pending messages; a thousand edits take a tenth of it
+_MAX_CHARACTERS = 1 << 20  # total length of all pending messages; a thousand edits take a tenth of it
 
 
 class Inbox:
@@ -27,15 +27,15 @@ class Inbox:
         sends."""
         if self._waiting:
             last, length = self._waiting[-1]
-            one = merged(last, message)
-            if one is not None:
+            replacement = merged(last, message)
+            if replacement is not None:
                 self._waiting.pop()
                 self._characters -= length
-                message = one
+                message = replacement
         self._waiting.append((message, characters))
         self._characters += characters
-        if self._characters > _MOST_CHARACTERS:
-            raise BadMessage("more is asked for than can be done")
+        if self._characters > _MAX_CHARACTERS:
+            raise BadMessage("too many messages are pending")
         self._mail.set()
 
     async def next(self) -> Message:
@@ -52,5 +52,6 @@ class Inbox:
         return len(self._waiting)
 
     def clear(self) -> None:
+        """Discards all pending messages."""
         self._waiting.clear()
         self._characters = 0

@@ -20,17 +20,17 @@ class LeftRequests:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        is_left = False
+        is_disconnected = False
 
-        async def heard() -> Message:
-            nonlocal is_left
+        async def watched_receive() -> Message:
+            nonlocal is_disconnected
             message = await receive()
-            is_left |= message["type"] == "http.disconnect"
+            is_disconnected |= message["type"] == "http.disconnect"
             return message
 
         try:
-            await self._app(scope, heard, send)
+            await self._app(scope, watched_receive, send)
         except Exception as error:
-            if not is_left:
+            if not is_disconnected:
                 raise
-            _log.info("%s was left before it was answered", scope["path"], exc_info=error)
+            _log.info("the client of %s disconnected before the response", scope["path"], exc_info=error)

@@ -14,11 +14,12 @@ from ...tolerance.grades import GRADES
 from .. import lens_edits
 from ..lens_bench import LensBench
 
-MOST_BYTES = 64 * 1024
-_SUMMED = {"orbit": ("x", "y"), "pan": ("x", "y"), "dolly": ("steps",)}  # pending messages are summed
+MAX_BYTES = 64 * 1024  # of a message from a browser
+_SUMMED = {"orbit": ("x", "y"), "pan": ("x", "y"), "dolly": ("steps",)}  # keys that are summed over pending messages
 _REPLACED = ("hover",)  # only the last pending message counts
-_OF_THE_PICTURE = ("orbit", "pan", "dolly", "focus", "meter", "turn", "switch", "rungs")
+_PICTURE_MESSAGES = ("orbit", "pan", "dolly", "focus", "meter", "turn", "switch", "levels")
 
+#: A message as parsed from JSON: "type", a key of _ACTIONS, and the arguments of its action.
 Message = dict[str, Any]
 
 
@@ -36,35 +37,35 @@ class BadMessage(Exception):  # noqa: N818
 
 def parsed(text: str) -> Message:
     """Parses a message. Raises BadMessage if it is malformed or of an unknown type."""
-    if len(text) > MOST_BYTES:
+    if len(text) > MAX_BYTES:
         raise BadMessage("the message is too long")
     try:
         message = json.loads(text)
     except (ValueError, RecursionError):
-        raise BadMessage("the message is no JSON") from None
+        raise BadMessage("the message is not valid JSON") from None
     if not isinstance(message, dict) or str(message.get("type")) not in _ACTIONS:
-        raise BadMessage("the message asks for nothing that is known")
+        raise BadMessage("the message has an unknown type")
     return message
 
 
-def merged(waiting: Message, newer: Message) -> Message | None:
+def merged(pending: Message, newer: Message) -> Message | None:
     """Returns one message that replaces two consecutive ones, or None if both must be performed."""
     kind = newer["type"]
-    if waiting["type"] != kind:
+    if pending["type"] != kind:
         return None
     if kind in _SUMMED:
-        return {"type": kind, **{key: _real(waiting, key) + _real(newer, key) for key in _SUMMED[kind]}}
+        return {"type": kind, **{key: _real(pending, key) + _real(newer, key) for key in _SUMMED[kind]}}
     if kind in _REPLACED:
         return newer
     same = ("surface", "field", "gesture")
-    if kind == "edit" and newer.get("gesture") and all(waiting.get(key) == newer.get(key) for key in same):
+    if kind == "edit" and newer.get("gesture") and all(pending.get(key) == newer.get(key) for key in same):
         return newer
     return None
 
 
 def subject(message: Message) -> str:
     """View that a message concerns, "lens" or "picture"; see Problem."""
-    return "picture" if message["type"] in _OF_THE_PICTURE else "lens"
+    return "picture" if message["type"] in _PICTURE_MESSAGES else "lens"
 
 
 def perform(message: Message, bench: LensBench) -> None:
@@ -73,43 +74,44 @@ def perform(message: Message, bench: LensBench) -> None:
 
 
 def _real(message: Message, key: str) -> float:
+    """Returns a finite number of the message, clamped to +-1e6. Raises BadMessage."""
     value = message.get(key)
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise BadMessage(f'"{key}" is to be a number')
+        raise BadMessage(f'"{key}" must be a number')
     bounded = min(max(value, -1e6), 1e6)  # an integer of JSON may be larger than any float
     if not math.isfinite(value if isinstance(value, float) else bounded):
-        raise BadMessage(f'"{key}" is to be a number')
+        raise BadMessage(f'"{key}" must be a number')
     return float(bounded)
 
 
 def _index(message: Message, key: str = "surface") -> int:
     value = message.get(key)
     if isinstance(value, bool) or not isinstance(value, int):
-        raise BadMessage(f'"{key}" is to be an integer')
+        raise BadMessage(f'"{key}" must be an integer')
     return value
 
 
 def _picture_point(message: Message) -> tuple[float, float]:
     u, v = _real(message, "u"), _real(message, "v")
     if not (0 <= u <= 1 and 0 <= v <= 1):
-        raise BadMessage("points of the picture lie between 0 and 1")
+        raise BadMessage("u and v must lie between 0 and 1")
     return u, v
 
 
 def _text(message: Message, key: str) -> str:
     value = message.get(key)
     if not isinstance(value, str) or len(value) > 200:
-        raise BadMessage(f'"{key}" is to be a short text')
+        raise BadMessage(f'"{key}" must be a short text')
     return value
 
 
 def _edit(message: Message, bench: LensBench) -> None:
     surface, field, value = _index(message), _text(message, "field"), message.get("value")
     if not isinstance(value, str | int | float | None) or isinstance(value, bool):
-        raise BadMessage('"value" is to be a number or a text')
+        raise BadMessage('"value" must be a number or a text')
     gesture = message.get("gesture")
     if gesture is not None and not isinstance(gesture, int):
-        raise BadMessage('"gesture" is to be an integer')
+        raise BadMessage('"gesture" must be an integer')
     bench.edit_value(surface, field, value, gesture)
 
 
@@ -131,7 +133,7 @@ def _swap(message: Message, bench: LensBench) -> None:
 def _another_copy(message: Message, bench: LensBench) -> None:
     grade = _text(message, "grade")
     if grade not in GRADES:
-        raise BadMessage('"grade" is to be one of ' + ", ".join(GRADES))
+        raise BadMessage('"grade" must be one of ' + ", ".join(GRADES))
     bench.another_copy(grade)
 
 
@@ -156,7 +158,7 @@ def _turn(message: Message, bench: LensBench) -> None:
 def _restore(message: Message, bench: LensBench) -> None:
     state = message.get("state")
     if not isinstance(state, dict):
-        raise BadMessage('"state" is to be an object')
+        raise BadMessage('"state" must be an object')
     bench.restore(state)
 
 
@@ -187,6 +189,6 @@ _ACTIONS: dict[str, Callable[[Message, LensBench], Any]] = {
     "turn": _turn,
     "restore": _restore,
     "cut": _cut,
-    "rungs": lambda m, bench: bench.measure_rungs(),
+    "levels": lambda m, bench: bench.measure_levels(),
     "switch": _switch,
 }

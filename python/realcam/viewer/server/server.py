@@ -23,24 +23,26 @@ from ...shot import Shot
 from ..lens_bench import LensBench
 from ..lens_reading import reader
 from ..page.layout import build_page
-from ..page.lens_panel import MOST_UPLOADED, lens_preview
+from ..page.lens_panel import MAX_UPLOADED, lens_preview
 from ..page.plots_panel import plotter
 from ..shot_source import ShotSource
 from .access import BodyLimit, Folders, Gate, is_local
 from .left_requests import LeftRequests
-from .strange_requests import tell_in_one_line
+from .strange_requests import shorten_tracebacks
 from .windows import Windows
 
 _STATIC = Path(__file__).parents[1] / "page" / "static"
-_MOST_MESSAGE = 1 << 20  # bytes; applies to NiceGUI's socket as well
+_MAX_MESSAGE = 1 << 20  # bytes; applies to NiceGUI's socket as well
 _UNKNOWN_WINDOW = 4404  # see stream.js
-_GOODBYE_S = 1  # time that the server waits at shutdown for browsers to close their connections
+_SHUTDOWN_TIMEOUT_S = 1  # time that the server waits at shutdown for browsers to close their connections
 
 
 @dataclass(frozen=True)
 class ServerSettings:
-    """folders: the only ones that are read and written. token: "": generated if the server needs one.
+    """Settings of the lens bench's server.
 
+    folders: the only ones that are read and written. token: "": generated if the server needs one.
+    device: of rendering. shows_browser: opens the page in a browser. tells_address: prints the page's address.
     noise_codes: noise to which a new window refines its pictures, in 8-bit codes.
     most_windows: limit, as each window has threads, a scene on the device and a picture.
     reconnect_s: time that a window is retained after its connection is lost.
@@ -64,7 +66,7 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
     token = None if is_local(settings.host) and not settings.token else settings.token or secrets.token_urlsafe(24)
     windows = Windows(settings.most_windows)
 
-    app.add_middleware(BodyLimit, most=2 * MOST_UPLOADED)
+    app.add_middleware(BodyLimit, max_bytes=2 * MAX_UPLOADED)
     app.add_middleware(Gate, token=token)
     # add_middleware adds inside of NiceGUI's own middleware; LeftRequests must be outermost.
     build_middleware_stack = app.build_middleware_stack
@@ -81,7 +83,7 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
             ui.label(str(error))
             return
         if window is None:
-            ui.label("Too many windows are open; close one and load this page again.")
+            ui.label("Too many windows are open; close one and reload this page.")
             return
         build_page(client, window, folders, source)
 
@@ -98,19 +100,20 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
         window = windows.get(key)
         if window is None:
             await socket.accept()
-            await socket.close(_UNKNOWN_WINDOW, "the server does not know this window any more")
+            await socket.close(_UNKNOWN_WINDOW, "this window is no longer open on the server")
             return
         await window.stream.serve(socket)
 
     address = f"http://{_shown(settings.host)}:{settings.port}/" + (f"?token={token}" if token else "")
 
-    async def tell() -> None:
+    async def started() -> None:
+        """Prints the address, and starts the worker processes."""
         if settings.tells_address:
             print(f"realcam: the lens bench is at {address}", flush=True)
         for process, module in ((reader, "realcam.viewer.lens_reading"), (plotter, "realcam.viewer.page.close_look")):
             threading.Thread(target=process.warm_up, args=(module,), daemon=True).start()
 
-    tell_in_one_line()
+    shorten_tracebacks()
     # Hides the message about connections that clients have not closed at shutdown.
     logging.getLogger("uvicorn.error").addFilter(lambda record: "timeout graceful shutdown" not in record.getMessage())
     status = 128 + signal.SIGINT
@@ -132,11 +135,11 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
             show_welcome_message=False,
             reconnect_timeout=settings.reconnect_s,
             binding_refresh_interval=None,
-            ws_max_size=_MOST_MESSAGE,
+            ws_max_size=_MAX_MESSAGE,
             tailwind=True,
-            timeout_graceful_shutdown=_GOODBYE_S,
+            timeout_graceful_shutdown=_SHUTDOWN_TIMEOUT_S,
             # Called once the server listens, whereas startup handlers are called before.
-            callback_notify=tell,
+            callback_notify=started,
             timeout_notify=10**9,
         )
     for process in (reader, plotter):
@@ -158,7 +161,9 @@ def check_port(host: str, port: int) -> None:
                 listening.bind(address)
                 listening.listen()
     except OSError as error:
-        raise InputError(f"cannot serve at {_shown(host)}:{port}: {error.strerror}; --host and --port choose") from None
+        raise InputError(
+            f"cannot serve at {_shown(host)}:{port}: {error.strerror}; choose another address by --host and --port"
+        ) from None
 
 
 def _shown(host: str) -> str:

@@ -32,7 +32,7 @@ def _is_ours(error: BaseException) -> bool:
     return any(file.is_relative_to(_PACKAGE) and file.name not in _MIDDLEWARE for file in files)
 
 
-def tell_in_one_line() -> None:
+def shorten_tracebacks() -> None:
     """Installs OneLine in the loggers of the server's libraries."""
     for name in _LOGGERS:
         logging.getLogger(name).addFilter(OneLine())

@@ -29,19 +29,22 @@ from .server_loop import call_on_loop
 _log = logging.getLogger(__name__)
 
 _QUALITIES = (40, 90)  # lowest and highest JPEG quality
-_SLOW_S, _QUICK_S = 0.120, 0.050  # round-trip times of a frame above and below which the quality is adapted
-_LAST_S = 0.5  # largest round-trip time of a final frame at which it is sent again at the highest quality
+_SLOW_S, _FAST_S = 0.120, 0.050  # round-trip times of a frame above and below which the quality is adapted
+_RESEND_LIMIT_S = 0.5  # largest round-trip time of a final frame at which it is sent again at the highest quality
 
 
 class PictureStream:
-    """Serves the page of one bench: one connection at a time, and a new one after a lost connection."""
+    """Serves the page of one bench: one connection at a time, and a new one after a lost connection.
+
+    executor: its single thread performs the user's actions. Must be made on the server's loop.
+    """
 
     def __init__(self, bench: LensBench, executor: ThreadPoolExecutor) -> None:
         self._bench, self._executor = bench, executor
         self._loop = asyncio.get_running_loop()
-        self._frames: dict[str, Frame] = {}
-        self._texts: dict[str, str] = {}
-        self._news = asyncio.Event()
+        self._frames: dict[str, Frame] = {}  #: frames to send, by slot
+        self._texts: dict[str, str] = {}  #: messages to send, by type
+        self._has_news = asyncio.Event()  #: set if there is something to send
         self.inbox = Inbox()  #: outlives a lost connection
         self._serving: list[asyncio.Task[None]] = []  #: tasks of the newest connection
         self._sent: tuple[str, float] | None = None  #: the unacknowledged frame, and the time at which it was sent
@@ -53,7 +56,7 @@ class PictureStream:
         bench.listeners.problem = self._offer_problem
         bench.listeners.plan = self._offer_plan
         bench.listeners.state = lambda state: self._offer_text("state", {"state": state})
-        bench.listeners.rungs = lambda rungs, note: self._offer_text("rungs", {"rungs": rungs, "note": note})
+        bench.listeners.levels = lambda levels, note: self._offer_text("levels", {"levels": levels, "note": note})
 
     async def serve(self, socket: WebSocket) -> None:
         """Serves until the page disconnects. Closes the connection at a message that our page never sends."""
@@ -80,6 +83,7 @@ class PictureStream:
                 task.cancel()
 
     async def _begin(self) -> None:
+        """Lets the bench send its current state."""
         await self._loop.run_in_executor(self._executor, self._bench.show)
 
     async def _receive(self, socket: WebSocket) -> None:
@@ -96,6 +100,7 @@ class PictureStream:
                 self.inbox.put(parsed(text), len(text))
 
     async def _work(self) -> None:
+        """Performs the messages of the inbox in order. Raises BadMessage."""
         while True:
             message = await self.inbox.next()
             # Shielded, because otherwise a queued action would be cancelled with the connection.
@@ -113,17 +118,17 @@ class PictureStream:
         except BadMessage as bad:
             return bad
         except RealcamError as error:
-            self._bench.report(Problem(str(error), of=subject(message)))
+            self._bench.report(Problem(str(error), view=subject(message)))
         except Exception:
-            _log.exception("%.200s could not be done", message)
-            text = "that could not be done; the server's log says more"
-            self._bench.report(Problem(text, of=subject(message)))
+            _log.exception("the message %.200s could not be performed", message)
+            text = "this action failed; see the server's log"
+            self._bench.report(Problem(text, view=subject(message)))
         return None
 
     async def _send(self, socket: WebSocket) -> None:
         while True:
-            await self._news.wait()
-            self._news.clear()
+            await self._has_news.wait()
+            self._has_news.clear()
             texts, self._texts = self._texts, {}
             for text in texts.values():
                 await socket.send_text(text)
@@ -135,6 +140,7 @@ class PictureStream:
                 await socket.send_bytes(_packed(slot, frame))
 
     def _acknowledge(self, name: str) -> None:
+        """Handles the page's acknowledgement of the last frame. name: its slot and serial, "a 12"."""
         if self._sent is None or self._sent[0] != name:
             return
         took = time.perf_counter() - self._sent[1]
@@ -143,14 +149,14 @@ class PictureStream:
         lowest, highest = _QUALITIES
         if took > _SLOW_S:
             self._quality = max(lowest, int(0.8 * self._quality))
-        elif took < _QUICK_S:
+        elif took < _FAST_S:
             self._quality = min(highest, self._quality + 5)
         frame = self._sent_frame
         # Sends a final frame of reduced quality again, because no further frame would replace it.
         is_sent_again = bool(frame and frame.is_final and frame.jpeg_quality < highest and not self._frames)
-        is_sent_again &= took <= _LAST_S
+        is_sent_again &= took <= _RESEND_LIMIT_S
         self._bench.set_jpeg_quality(highest if is_sent_again else self._quality)
-        self._news.set()
+        self._has_news.set()
         if is_sent_again:
             with contextlib.suppress(RuntimeError):  # raised if the window is closed
                 self._executor.submit(self._bench.show_again)
@@ -177,8 +183,8 @@ class PictureStream:
         ]
         model = self._bench.controls.model
         if model != "full":
-            note = "What glass and coatings do is seen with the camera model of all surfaces. " + note
-        states = self._bench.switches.of_model(model).of
+            note = 'Effects of glass and coatings need the camera model "all surfaces". ' + note
+        states = self._bench.switches.restricted_to_model(model).states
         self._offer_text("plan", {"rows": rows, "note": note, "states": states})
 
     def _offer_text(self, kind: str, content: dict[str, Any]) -> None:
@@ -186,14 +192,15 @@ class PictureStream:
 
     def _put_frame(self, slot: str, frame: Frame) -> None:
         self._frames[slot] = frame
-        self._news.set()
+        self._has_news.set()
 
     def _put_text(self, kind: str, text: str) -> None:
         self._texts[kind] = text
-        self._news.set()
+        self._has_news.set()
 
 
 def _packed(slot: str, frame: Frame) -> bytes:
+    """Returns the binary message of a frame."""
     header = {key: value for key, value in vars(frame).items() if key not in ("jpeg", "costs")}
     header |= {"slot": slot, "costs": vars(frame.costs) if frame.costs else None}
     text = json_text(header).encode()

@@ -13,13 +13,13 @@ from ..page.window import Window
 
 
 class Windows:
-    """Open windows, at most `most`, as each has threads, a scene on the device and a picture. For use on the server's
+    """Open windows, at most `limit`, as each has threads, a scene on the device and a picture. For use on the server's
     loop."""
 
-    def __init__(self, most: int) -> None:
-        self._most = most
+    def __init__(self, limit: int) -> None:
+        self._limit = limit
         self._open: dict[str, tuple[Client, Window]] = {}
-        self._in_the_making = 0
+        self._opening = 0  # number of windows that are being opened
         # A separate executor, because the server would wait at shutdown for the loop's default one.
         self._executor = ThreadPoolExecutor(thread_name_prefix="realcam-windows")
 
@@ -30,15 +30,15 @@ class Windows:
     async def open(self, client: Client, make: Callable[[], LensBench]) -> Window | None:
         """Opens a window, whose bench is made on another thread. Returns None if too many are open. Raises the
         exceptions of `make`."""
-        left = None
-        if len(self._open) + self._in_the_making >= self._most:
-            left = self._one_that_is_left()
-            if left is None:
+        abandoned = None
+        if len(self._open) + self._opening >= self._limit:
+            abandoned = self._remove_disconnected()
+            if abandoned is None:
                 return None
-        self._in_the_making += 1  # before the first await, during which more windows may be requested
+        self._opening += 1  # before the first await, during which more windows may be requested
         try:
-            if left:
-                await asyncio.wrap_future(self._executor.submit(left.close))
+            if abandoned:
+                await asyncio.wrap_future(self._executor.submit(abandoned.close))
             made = self._executor.submit(make)
             try:
                 bench = await asyncio.shield(asyncio.wrap_future(made))
@@ -46,9 +46,9 @@ class Windows:
                 made.add_done_callback(_close_bench)
                 raise
         finally:
-            self._in_the_making -= 1
+            self._opening -= 1
         window = Window(bench)
-        if client.is_deleted:  # while the bench was made
+        if client.is_deleted:  # the page was closed while the bench was made
             self._executor.submit(window.close)
             return None
         self._open[window.key] = client, window
@@ -59,7 +59,7 @@ class Windows:
         if self._open.pop(window.key, None):
             self._executor.submit(window.close)
 
-    def _one_that_is_left(self) -> Window | None:
+    def _remove_disconnected(self) -> Window | None:
         """Removes and returns the oldest window without a connection, before its time to reconnect ends; None: there is
         no such window."""
         for key, (client, window) in self._open.items():

@@ -4,13 +4,13 @@ import { streamAt } from "/realcam/stream.js";
 
 // Colours that are visible on a light page and a dark one.
 const COLOURS = ["#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a", "#5b8f9e", "#e0709a", "#a0642d", "#8f8f8f"];
-const W = 300, H = 120, LEFT = 34, BOTTOM = 20;
+const W = 300, H = 120, LEFT = 34, BOTTOM = 20; // size of the diagram, and its margins for labels
 
 export default {
   props: { path: String, effects: Array },
   template: `
 <section class="rc-costs" aria-label="Effects and cost">
-  <p class="rc-note">An effect on "auto" is simulated if this picture shows it.</p>
+  <p class="rc-note">An effect on "auto" is simulated if it is visible in this picture.</p>
   <ul class="rc-effects">
     <li v-for="e in effects" :key="e.name" :title="e.help">
       <label :for="'rc-effect-' + e.name">{{ label_of(e.name) }}</label>
@@ -37,15 +37,15 @@ export default {
     <text x="10" y="${(H - BOTTOM) / 2}" text-anchor="middle" transform="rotate(-90 10 ${(H - BOTTOM) / 2})">noise (levels)</text>
     <text x="${LEFT - 3}" y="9" text-anchor="end">{{ top }}</text><text x="${LEFT - 3}" y="${H - BOTTOM}" text-anchor="end">{{ bottom }}</text>
     <polyline class="rc-curve" :points="curve" />
-    <g v-for="(rung, k) in placedRungs" :key="rung.name" class="rc-rung" :style="{ color: colour(k) }">
-      <title>{{ rung.name }}</title><polyline :points="rung.line" /><circle v-for="(p, j) in rung.points" :key="j" :cx="p[0]" :cy="p[1]" r="2.5" /></g>
+    <g v-for="(level, k) in plottedLevels" :key="level.name" class="rc-level" :style="{ color: colour(k) }">
+      <title>{{ level.name }}</title><polyline :points="level.line" /><circle v-for="(p, j) in level.points" :key="j" :cx="p[0]" :cy="p[1]" r="2.5" /></g>
   </svg>
-  <button type="button" @click="stream.send({ type: 'rungs' })"
-    title="Takes this shot at every level of simulation, in few pixels, and shows what each costs">Measure the levels of simulation</button>
-  <p v-if="rungsNote" class="rc-note" data-testid="rungs-note">{{ rungsNote }}</p>
-  <ul class="rc-legend"><li v-for="(rung, k) in rungs" :key="rung.name"><span :style="{ background: colour(k) }"></span>{{ rung.name }}</li></ul>
+  <button type="button" @click="stream.send({ type: 'levels' })"
+    title="Renders this shot at every level of simulation, at a low resolution, and shows noise over time of each">Measure the levels of simulation</button>
+  <p v-if="levelsNote" class="rc-note" data-testid="levels-note">{{ levelsNote }}</p>
+  <ul class="rc-legend"><li v-for="(level, k) in levels" :key="level.name"><span :style="{ background: colour(k) }"></span>{{ level.name }}</li></ul>
 </section>`,
-  data: () => ({ states: {}, all: [], note: "", costs: null, points: [], rungs: [], rungsNote: "", serial: 0 }),
+  data: () => ({ states: {}, all: [], note: "", costs: null, points: [], levels: [], levelsNote: "", serial: 0 }),
   computed: {
     rows() {
       return Object.fromEntries(this.all.map((row) => [row.effect, row]));
@@ -59,8 +59,9 @@ export default {
       return `Time: lens ${percent(this.costs.lens_share)}, scene ${percent(this.costs.scene_share)}, ` +
         `shading and effects ${percent(this.costs.other_share)}`;
     },
+    /// Ends of the axes: times in s, then noise in grey levels.
     limits() {
-      const all = [...this.points, ...this.rungs.flatMap((r) => r.points)].filter(([t, n]) => t > 0 && n > 0);
+      const all = [...this.points, ...this.levels.flatMap((r) => r.points)].filter(([t, n]) => t > 0 && n > 0);
       if (!all.length) return [0.01, 10, 0.5, 20];
       const t = all.map((p) => p[0]), n = all.map((p) => p[1]);
       return [Math.min(...t) / 1.2, Math.max(...t) * 1.2, Math.min(...n) / 1.3, Math.max(...n) * 1.3];
@@ -69,11 +70,11 @@ export default {
     bottom() { return this.limits[2].toPrecision(2); },
     top() { return this.limits[3].toPrecision(2); },
     curve() {
-      return this.points.map(([t, n]) => this.at(t, n).join(",")).join(" ");
+      return this.points.map(([t, n]) => this.positionOf(t, n).join(",")).join(" ");
     },
-    placedRungs() {
-      return this.rungs.map(({ name, points }) => {
-        const placed = points.filter((p) => p[0] > 0 && p[1] > 0).map((p) => this.at(...p));
+    plottedLevels() {
+      return this.levels.map(({ name, points }) => {
+        const placed = points.filter((p) => p[0] > 0 && p[1] > 0).map((p) => this.positionOf(...p));
         return { name, points: placed, line: placed.map((p) => p.join(",")).join(" ") };
       });
     },
@@ -82,15 +83,16 @@ export default {
     this.stream = streamAt(this.path);
     this.ends = [
       this.stream.on("plan", ({ rows, note, states }) => { this.all = rows; this.note = note; this.states = states; }),
-      this.stream.on("rungs", ({ rungs, note }) => { this.rungs = rungs; this.rungsNote = note; }),
-      this.stream.on("frame", ({ header }) => this.take(header)),
+      this.stream.on("levels", ({ levels, note }) => { this.levels = levels; this.levelsNote = note; }),
+      this.stream.on("frame", ({ header }) => this.addFrame(header)),
     ];
   },
   unmounted() {
     this.ends.forEach((end) => end());
   },
   methods: {
-    take(header) {
+    /// Adds a frame's noise to the curve, and shows its costs.
+    addFrame(header) {
       if (header.slot !== "a") return;
       if (header.costs) this.costs = header.costs;
       const isAgain = header.is_final && header.samples === this.samples; // the same picture at a higher JPEG quality
@@ -103,9 +105,10 @@ export default {
       const last = this.points[this.points.length - 1];
       if (header.noise_codes && (!last || last[1] !== header.noise_codes)) this.points.push([header.seconds, header.noise_codes]);
     },
-    at(t, n) {
-      const [t0, t1, n0, n1] = this.limits, share = (x, a, b) => Math.log(x / a) / Math.log(b / a);
-      return [LEFT + (W - LEFT) * share(t, t0, t1), (H - BOTTOM) * (1 - share(n, n0, n1))];
+    /// Position in the diagram of a time and a noise.
+    positionOf(t, n) {
+      const [t0, t1, n0, n1] = this.limits, fraction = (x, a, b) => Math.log(x / a) / Math.log(b / a);
+      return [LEFT + (W - LEFT) * fraction(t, t0, t1), (H - BOTTOM) * (1 - fraction(n, n0, n1))];
     },
     colour: (k) => COLOURS[k % COLOURS.length],
     planned: (row) => (!row ? "" : row.is_kept ? " (on)" : " (off)"),
@@ -115,14 +118,15 @@ export default {
       const row = this.rows[name], short = (x) => (x === null ? "∞" : String(Number(x.toPrecision(2)))); // JSON has no infinity
       if (!row) return "";
       const unit = row.unit === "px" ? "pixel" : "grey level", size = short(row.size);
-      const limit = `less than ${short(row.threshold)} would not be seen`;
-      const why = !row.is_kept && row.size > row.threshold ? ". It is off all the same: the reason stands with the effect." : `; ${limit}.`;
+      const limit = `below ${short(row.threshold)} it would be invisible`;
+      const why = !row.is_kept && row.size > row.threshold ? ". It is off nevertheless, for the reason shown with the effect." : `; ${limit}.`;
       return `It changes this picture by ${size} ${unit}${size === "1" ? "" : "s"}${why}`;
     },
     choose(effect, state) {
       this.states = { ...this.states, [effect]: state };
       this.stream.send({ type: "switch", effect, state });
     },
+    /// Text of a large number with a prefix.
     large: (x) => (x >= 1e9 ? `${(x / 1e9).toPrecision(3)} G` : x >= 1e6 ? `${(x / 1e6).toPrecision(3)} M` : `${(x / 1e3).toPrecision(3)} k`),
   },
 };

@@ -2,7 +2,7 @@
 
 const CLIPPED = 254; // JPEG changes codes by one or two
 const PEAKING = 44; // smallest response of the Laplacian below at a sharp edge, in codes
-const SURE = 4; // smallest response at an edge, in standard deviations of its noise
+const SIGNIFICANCE = 4; // smallest response at an edge, in standard deviations of its noise
 const NOISE_GAIN = Math.sqrt(20); // noise gain of the Laplacian below: root of the sum of its squared weights
 
 /// Histograms of 64 bins for red, green, blue.
@@ -43,7 +43,7 @@ function sharpEdges({ width, height, data }, noise) {
   // An isolated brighter or darker pixel is an outlier of the samples, not an edge.
   const green = new Uint8ClampedArray(width * height);
   for (let k = 0; k < green.length; ++k) green[k] = data[4 * k + 1];
-  const even = green.slice();
+  const smoothed = green.slice();
   for (let y = 1; y + 1 < height; ++y)
     for (let x = 1; x + 1 < width; ++x) {
       const k = y * width + x;
@@ -55,34 +55,37 @@ function sharpEdges({ width, height, data }, noise) {
           if (value < low) low = value;
           if (value > high) high = value;
         }
-      even[k] = Math.min(high, Math.max(low, green[k]));
+      smoothed[k] = Math.min(high, Math.max(low, green[k]));
     }
-  const bends = new Float32Array(width * height);
+  const laplacian = new Float32Array(width * height);
   for (let y = 1; y + 1 < height; ++y)
     for (let x = 1; x + 1 < width; ++x) {
       const k = y * width + x;
-      bends[k] = Math.abs(4 * even[k] - even[k - 1] - even[k + 1] - even[k - width] - even[k + width]);
+      laplacian[k] = Math.abs(
+        4 * smoothed[k] - smoothed[k - 1] - smoothed[k + 1] - smoothed[k - width] - smoothed[k + width],
+      );
     }
-  const stands = new Uint8Array(width * height);
+  const isSignificant = new Uint8Array(width * height);
   for (let y = 0; y < height; ++y) {
     const row = noise[Math.floor((y * noise.length) / height)];
     for (let x = 0; x < width; ++x) {
       const deviation = row[Math.floor((x * row.length) / width)];
-      stands[y * width + x] = bends[y * width + x] > Math.max(PEAKING, SURE * NOISE_GAIN * deviation) ? 1 : 0;
+      isSignificant[y * width + x] = laplacian[y * width + x] > Math.max(PEAKING, SIGNIFICANCE * NOISE_GAIN * deviation) ? 1 : 0;
     }
   }
   const isEdge = new Uint8Array(width * height);
   for (let y = 1; y + 1 < height; ++y)
     for (let x = 1; x + 1 < width; ++x) {
       const k = y * width + x;
-      if (!stands[k]) continue;
-      let near = -1;
-      for (let dy = -width; dy <= width; dy += width) for (let dx = -1; dx <= 1; ++dx) near += stands[k + dy + dx];
-      isEdge[k] = near >= 2 ? 1 : 0;
+      if (!isSignificant[k]) continue;
+      let neighbours = -1; // without the pixel itself
+      for (let dy = -width; dy <= width; dy += width) for (let dx = -1; dx <= 1; ++dx) neighbours += isSignificant[k + dy + dx];
+      isEdge[k] = neighbours >= 2 ? 1 : 0;
     }
   return isEdge;
 }
 
+/// Draws the histograms of histogramOf().
 export function drawHistogram(canvas, bins) {
   const context = canvas.getContext("2d");
   const { width, height } = canvas;

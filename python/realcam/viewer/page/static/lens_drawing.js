@@ -3,6 +3,7 @@
 import { streamAt, oncePerFrame } from "/realcam/stream.js";
 import { profile, radiusOfSag, sag } from "/realcam/lens_shape.js";
 
+// First-order data: key of the view, label, unit, help.
 const FIGURES = [
   ["effective_focal_length_mm", "Focal length", "mm", "Distance from the rear principal plane to the rear focal point"],
   ["f_number", "f-number", "", "Focal length over the diameter of the entrance pupil"],
@@ -11,17 +12,20 @@ const FIGURES = [
   ["entrance_pupil_diameter_mm", "Entrance pupil", "mm", "Diameter of the stop as seen from the object"],
   ["exit_pupil_diameter_mm", "Exit pupil", "mm", "Diameter of the stop as seen from the film"],
 ];
-const RADIUS = ["radius_mm", "Radius", "mm", "Radius of curvature; positive where the centre lies on the film's side, empty for a plane"];
-const RADIUS_X = ["radius_x_mm", "Radius in xz", "mm", "As the radius, which is in yz then, in the other plane; of toroids and biconics"];
+// Columns: key of the row, label, unit, help.
+const RADIUS = ["radius_mm", "Radius", "mm", "Radius of curvature; positive if the centre lies on the film's side, empty for a plane"];
+const RADIUS_X = ["radius_x_mm", "Radius in xz", "mm", "Radius of curvature in the xz plane, for toroids and biconics; the other radius is in the yz plane"];
 const COLUMNS = [
   ["thickness_mm", "Thickness", "mm", "Along the axis to the next surface"],
-  ["glass", "Glass", "", "What follows the surface: empty for air, an index, an index and an Abbe number, or a name"],
-  ["semi_diameter_mm", "Semi-diameter", "mm", "From the axis to the rim that stops light"],
+  ["glass", "Glass", "", "Medium behind the surface: empty for air, an index, an index and an Abbe number, or a name"],
+  ["semi_diameter_mm", "Semi-diameter", "mm", "From the axis to the rim, beyond which no light passes"],
   ["conic", "Conic", "", "0 for a sphere, -1 for a paraboloid"],
 ];
 
+/// Points (z, y) as the attribute of an SVG polyline.
 const text = (points) => points.map(([z, y]) => `${z},${y}`).join(" ");
 
+// Id of the last drag; starts at random, so that it differs from those before a reload of the page.
 let gestures = Math.floor(Math.random() * 2 ** 30);
 
 export default {
@@ -30,8 +34,8 @@ export default {
 <section class="rc-lens" aria-label="Lens">
   <div class="rc-lens-head">
     <h2>{{ view ? view.title || view.name : "No lens yet" }}</h2>
-    <button type="button" @click="send('undo')" :disabled="!history.can_undo" title="Take the last change of the lens back (Ctrl+Z)">Undo</button>
-    <button type="button" @click="send('redo')" :disabled="!history.can_redo" title="Do it again (Ctrl+Y)">Redo</button>
+    <button type="button" @click="send('undo')" :disabled="!history.can_undo" title="Undo the last change of lens, zoom or film (Ctrl+Z)">Undo</button>
+    <button type="button" @click="send('redo')" :disabled="!history.can_redo" title="Redo the last change that was undone (Ctrl+Y)">Redo</button>
   </div>
   <svg v-if="view" ref="svg" class="rc-section" :viewBox="box.join(' ')" preserveAspectRatio="xMidYMid meet"
       role="img" :aria-label="'Section of ' + view.name" @pointermove="drag" @pointerup="drop" @pointercancel="drop">
@@ -59,7 +63,7 @@ export default {
       <polyline v-if="dragged" :class="['rc-dragged', problem ? 'rc-impossible' : '']" :points="dragged" />
       <g v-if="surface && handles.length">
         <circle v-for="h in handles" :key="h.field" class="rc-handle" :cx="h.at[0]" :cy="h.at[1]" :r="0.022 * box[3]"
-          :data-handle="h.field" @pointerdown.stop="take($event, h)"><title>{{ h.title }}</title></circle>
+          :data-handle="h.field" @pointerdown.stop="startDrag($event, h)"><title>{{ h.title }}</title></circle>
       </g>
     </g>
     <g v-if="showsMarks" class="rc-mark">
@@ -68,8 +72,8 @@ export default {
   </svg>
   <div v-if="view" class="rc-lens-head">
     <label title="Blue faces have their centre of curvature on the film's side, red ones on the object's"><input type="checkbox" v-model="colours"> Signs of the radii</label>
-    <label v-if="!view.is_rotational" title="The section in the plane of x and z, instead of that of y and z"><input type="checkbox" :checked="view.plane === 'xz'" @change="send('cut', { plane: $event.target.checked ? 'xz' : 'yz' })"> From above</label>
-    <label title="Pupils, principal planes and focal points"><input type="checkbox" v-model="showsMarks"> Pupils and planes</label>
+    <label v-if="!view.is_rotational" title="Shows the section in the xz plane instead of the yz plane"><input type="checkbox" :checked="view.plane === 'xz'" @change="send('cut', { plane: $event.target.checked ? 'xz' : 'yz' })"> From above</label>
+    <label title="Marks pupils, principal planes and focal points"><input type="checkbox" v-model="showsMarks"> Pupils and planes</label>
     <span class="rc-note">{{ handles.length ? "Drag a dot to change surface " + (chosen + 1) + "." : "Click a surface of the drawing to change it." }}</span>
   </div>
   <p v-if="problem" class="rc-problem" role="alert" data-testid="problem">{{ problem.message }}</p>
@@ -105,11 +109,11 @@ export default {
   </table>
   <datalist v-once id="rc-glasses"><option v-for="name in glasses" :key="name" :value="name"></option></datalist>
   </div>
-  <div v-if="view" class="rc-lens-head rc-sample" title="The lens as a workshop makes it: radii, thicknesses, glass and centring have random errors within the tolerances of the class">
+  <div v-if="view" class="rc-lens-head rc-sample" title="Replaces the lens by a manufactured copy: radii, thicknesses, glass and centring have random errors within the tolerances of the class">
     <label>Tolerance class <select v-model="grade">
       <option value="commercial">commercial</option><option value="precision">precision</option><option value="high">high precision</option></select></label>
     <button type="button" @click="send('another_copy', { grade })">Make a production sample</button>
-    <span class="rc-note">The lens as a workshop makes it, with random errors within this class. Undo goes back.</span>
+    <span class="rc-note">A manufactured copy with random errors within this class. Undo restores the lens.</span>
   </div>
 </section>`,
   data: () => ({
@@ -159,7 +163,7 @@ export default {
     this.ends = [
       this.stream.on("lens", (view) => this.show(view)),
       this.stream.on("rays", (rays) => { this.rays = Object.freeze(rays); }),
-      this.stream.on("problem", ({ problem }) => { this.problem = problem?.of === "lens" ? problem : null; }),
+      this.stream.on("problem", ({ problem }) => { this.problem = problem?.view === "lens" ? problem : null; }),
     ];
     this.undoes = (event) => this.undoByKey(event);
     window.addEventListener("keydown", this.undoes);
@@ -170,6 +174,7 @@ export default {
     this.ends.forEach((end) => end());
   },
   methods: {
+    /// Shows a new lens view; see lens_view.py.
     show(view) {
       const cell = document.activeElement;
       const isMarked = cell?.dataset.cell && cell.selectionEnd - cell.selectionStart === cell.value.length;
@@ -192,15 +197,19 @@ export default {
       const length = Math.max(back - front, 0.5 * (high - low)), left = front - 0.25 * length, air = 0.06 * (high - low);
       this.box = [left, -high - air, back + 0.05 * length - left, high - low + 2 * air];
     },
+    /// CSS classes of a face.
     faceClass(face) {
       const sign = !this.colours ? "" : face.sign > 0 ? "rc-positive" : face.sign < 0 ? "rc-negative" : "rc-plane";
       const bad = this.problem?.surface === face.surface ? "rc-impossible" : "";
       return ["rc-face", face.is_mirror ? "rc-mirror" : "", sign, bad, face.surface === this.chosen ? "rc-chosen" : ""];
     },
+    /// Chooses a surface, by its index, for its drag handles.
     choose(s) {
       this.chosen = s;
     },
+    /// True if the surface of this row has a value in the column.
     has: (row, key) => key === "radius_x_mm" ? key in row : row.type === "refracting" || !["glass"].includes(key) && (row.type === "mirror" || ["thickness_mm", "semi_diameter_mm"].includes(key)),
+    /// Text of a cell.
     shown(row, key) {
       const value = key.match(/^a\d+$/) ? (row.aspheric[key.slice(1)] ?? 0) : row[key];
       return value === null ? "" : typeof value === "number" ? this.number(value, 7) : value;
@@ -215,12 +224,14 @@ export default {
     send(type, more = {}) {
       this.stream.send({ type, ...more });
     },
+    /// Sends a cell of the table that the user has changed.
     edit(surface, field, text) {
       this.typed = { cell: `${surface}-${field}`, text, isSent: true }; // shown until the edited lens arrives
       const isNumber = field !== "glass" && text.trim() !== "" && !Number.isNaN(Number(text));
       this.send("edit", { surface, field, value: isNumber ? Number(text) : text });
     },
-    take(event, handle) {
+    /// Begins to drag a handle.
+    startDrag(event, handle) {
       this.$refs.svg.setPointerCapture(event.pointerId);
       // The scale is fixed during a drag; reading it at each step would force a page layout each time.
       this.held = {
@@ -229,14 +240,15 @@ export default {
       event.preventDefault();
     },
     /// Position of the mouse in mm.
-    at(event) {
+    positionOf(event) {
       const m = this.held.scale;
       return [(event.clientX - m.e) / m.a, -(event.clientY - m.f) / m.d];
     },
+    /// Draws the dragged surface, and sends the new value.
     drag(event) {
       const held = this.held;
       if (!held) return;
-      const [z, y] = this.at(event), s = held.from, now = { ...s };
+      const [z, y] = this.positionOf(event), s = held.from, now = { ...s };
       if (held.field === "semi_diameter_mm") now.semi_diameter_mm = Math.max(0.01 * s.semi_diameter_mm, y);
       else if (held.field === "radius_mm") now.radius_mm = radiusOfSag(s, 0.7 * s.semi_diameter_mm, z - s.z);
       else now.z = z;
@@ -250,6 +262,7 @@ export default {
         value: isMove ? held.thickness + z - s.z : now[held.field],
       });
     },
+    /// Ends a drag.
     drop() {
       if (!this.held) return;
       this.held = null;

@@ -1,8 +1,9 @@
 // The bundled lenses as cards, filtered by name, kind and numbers.
 
+// Choices of the filters: ranges from the first number up to the last.
 const FOCAL_LENGTHS_MM = [[0, 20], [20, 35], [35, 70], [70, 135], [135, Infinity]];
 const F_NUMBERS = [1.4, 2, 2.8, 4];
-const ENGRAVED = 1.05; // f-numbers within this ratio of a standard one are engraved as that one
+const TOLERANCE = 1.05; // f-numbers exceed a standard one by up to this ratio and are still engraved as that one
 const YEARS = [[0, 1949], [1950, 1969], [1970, 1989], [1990, Infinity]];
 
 /// Text of a range: of integers including the last, or of numbers below its end.
@@ -35,19 +36,19 @@ export default {
       </button>
     </li>
   </ul>
-  <p v-if="!found.length">No lens fits these choices.</p>
+  <p v-if="!found.length">No lens matches these filters.</p>
 </dialog>`,
   data() {
     const kinds = [...new Set(this.lenses.map((lens) => lens.kind))].sort();
     const choices = [
-      { name: "kind", label: "Kind", help: "By the angle of view over the diagonal, and by what the lens is for",
+      { name: "kind", label: "Kind", help: "Kind of lens, by its diagonal angle of view and its purpose",
         options: kinds.map((kind) => ({ text: kind, has: (lens) => lens.kind === kind })) },
-      { name: "focal-length", label: "Focal length", help: "In mm; of a zoom at its first position",
+      { name: "focal-length", label: "Focal length", help: "Focal length in mm; that of a zoom at its first position",
         options: FOCAL_LENGTHS_MM.map(([from, to]) => ({ text: `${range([from, to])} mm`,
           has: ({ focal_length_mm: mm }) => from <= mm && mm < to })) },
       { name: "f-number", label: "Wide open", help: "The f-number of the lens wide open",
-        options: F_NUMBERS.map((most) => ({ text: `f/${most} or faster`, has: (lens) => lens.f_number < ENGRAVED * most })) },
-      { name: "year", label: "Year", help: "That of the patent or book that the numbers are from",
+        options: F_NUMBERS.map((most) => ({ text: `f/${most} or faster`, has: (lens) => lens.f_number < TOLERANCE * most })) },
+      { name: "year", label: "Year", help: "Year of the patent or book with the prescription",
         options: YEARS.map(([from, to]) => ({ text: range([from, to], "whole"),
           has: ({ year }) => year && from <= year && year <= to })) },
     ];

@@ -11,13 +11,13 @@ export function sag(surface, h) {
 
 /// Radius of curvature for which the surface has the sag z at h; null for a plane.
 export function radiusOfSag(surface, h, z) {
-  const rest = sag({ ...surface, radius_mm: null }, h);
-  const conicShare = z - rest;
-  const curvature = (2 * conicShare) / (h * h + (1 + surface.conic) * conicShare * conicShare);
+  const aspheric = sag({ ...surface, radius_mm: null }, h);
+  const conicSag = z - aspheric;
+  const curvature = (2 * conicSag) / (h * h + (1 + surface.conic) * conicSag * conicSag);
   return Math.abs(curvature) < 1e-6 ? null : 1 / curvature;
 }
 
-/// Points of the surface's section from rim to rim.
+/// Points (z, y) of the surface's section from rim to rim.
 export function profile(surface, steps = 48) {
   const points = [];
   for (let k = -steps; k <= steps; ++k) {

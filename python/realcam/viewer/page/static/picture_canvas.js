@@ -4,8 +4,8 @@ import { streamAt, oncePerFrame } from "/realcam/stream.js";
 import { clippedShare, drawHistogram, histogramOf, marksOf } from "/realcam/exposure_marks.js";
 
 const CLICK_PX = 4; // a press that moves less is a click
-const KEY_STEP = 0.04; // of the picture's height
-const MAGNIFIED = 4;
+const KEY_STEP = 0.04; // camera movement per key press, in heights of the picture
+const MAGNIFICATION = 4;
 
 export default {
   props: { path: String },
@@ -23,21 +23,21 @@ export default {
     <div v-if="denoised.a" class="rc-badge" data-testid="denoised">denoised</div>
     <div v-if="compares && denoised.b" class="rc-badge rc-right">denoised</div>
     <div v-if="compares" class="rc-wipe-line" :style="{ left: 100 * wipe + '%' }"></div>
-    <div v-if="!isConnected" class="rc-lost" role="alert">Connection lost. Trying again...</div>
+    <div v-if="!isConnected" class="rc-lost" role="alert">Connection lost. Reconnecting...</div>
   </div>
-  <p id="rc-picture-keys" class="rc-hidden">Arrow keys move the camera around, with Shift sideways, plus and minus
-    nearer and farther. F focuses and M meters in the middle. [ and ] turn the aperture ring, comma and period the
+  <p id="rc-picture-keys" class="rc-hidden">Arrow keys move the camera around its subject, with Shift sideways, plus and
+    minus nearer and farther. F focuses and M meters in the middle. [ and ] turn the aperture ring, comma and period the
     shutter dial, I and Shift I the ISO dial, Z and Shift Z the zoom ring.</p>
   <div class="rc-toolbar">
     <fieldset aria-label="A click in the picture sets"><span>Click:</span>
-      <label title="Bring the point that you click into focus"><input type="radio" value="focus" v-model="mode"> Focus</label>
-      <label title="Expose so that the point that you click becomes middle grey"><input type="radio" value="meter" v-model="mode"> Meter</label>
+      <label title="Focuses on the point that you click"><input type="radio" value="focus" v-model="mode"> Focus</label>
+      <label title="Sets the exposure so that the point that you click becomes middle grey"><input type="radio" value="meter" v-model="mode"> Meter</label>
     </fieldset>
     <label title="Marks sharp edges in yellow"><input type="checkbox" v-model="peaking"> Peaking</label>
-    <label title="Stripes where the picture is as bright as it can show"><input type="checkbox" v-model="clipping"> Clipping</label>
-    <label class="rc-for-mouse" title="Four times as large under the mouse"><input type="checkbox" v-model="magnifier"> Magnifier</label>
+    <label title="Marks clipped pixels by stripes"><input type="checkbox" v-model="clipping"> Clipping</label>
+    <label class="rc-for-mouse" title="Magnifies the picture under the mouse four times"><input type="checkbox" v-model="magnifier"> Magnifier</label>
     <label v-if="compares" class="rc-wipe">Wipe <input type="range" min="0" max="1" step="0.005" v-model.number="wipe"
-      aria-label="Where one picture ends and the other begins"></label>
+      aria-label="Position of the line between both pictures"></label>
     <canvas ref="histogram" class="rc-histogram" width="192" height="48" role="img"
       aria-label="Histogram of red, green and blue, from black to white"></canvas>
     <output class="rc-status" data-testid="status">{{ status }}</output>
@@ -77,9 +77,9 @@ export default {
   mounted() {
     this.stream = streamAt(this.path);
     this.ends = [
-      this.stream.on("frame", (frame) => this.take(frame)),
+      this.stream.on("frame", (frame) => this.showFrame(frame)),
       this.stream.on("connection", ({ isOpen }) => { this.isConnected = isOpen; }),
-      this.stream.on("problem", ({ problem }) => { this.problem = problem?.of === "picture" ? problem.message : ""; }),
+      this.stream.on("problem", ({ problem }) => { this.problem = problem?.view === "picture" ? problem.message : ""; }),
     ];
     this.sendHover = oncePerFrame((u, v) => this.stream.send({ type: "hover", u, v }));
     this.drawMarksSoon = oncePerFrame(() => this.drawMarks());
@@ -88,7 +88,8 @@ export default {
     this.ends.forEach((end) => end());
   },
   methods: {
-    take({ header, bitmap }) {
+    /// Shows a frame.
+    showFrame({ header, bitmap }) {
       this.bitmaps[header.slot]?.close();
       this.bitmaps[header.slot] = bitmap;
       this.denoised[header.slot] = header.is_denoised;
@@ -105,6 +106,7 @@ export default {
       this.magnify();
       this.$emit("frame", { ...header });
     },
+    /// Shows or hides the second picture.
     setComparison(compares) {
       this.compares = compares;
       if (!compares) {
@@ -113,6 +115,7 @@ export default {
       }
       this.draw();
     },
+    /// Draws the picture, and the second one to the right of the wipe line.
     draw() {
       const canvas = this.$refs.canvas, context = canvas.getContext("2d");
       const { a, b } = this.bitmaps;
@@ -127,6 +130,7 @@ export default {
         context.restore();
       }
     },
+    /// Updates the histogram, the share of clipped pixels, and the overlay of marks.
     drawMarks() {
       const a = this.bitmaps.a;
       if (!a) return;
@@ -147,6 +151,7 @@ export default {
         marks.getContext("2d").putImageData(marksOf(image, { clipping: this.clipping, peaking: this.peaking, noise: this.header.noise_tiles }), 0, 0);
       }
     },
+    /// Picture coordinates u, v (0 to 1, from the upper left corner) of the mouse.
     point(event) {
       const box = this.$refs.canvas.getBoundingClientRect();
       const within = (x) => Math.min(1, Math.max(0, x));
@@ -178,6 +183,7 @@ export default {
       }
       this.pressed = null;
     },
+    /// Focuses or meters at a point of the picture, and marks it.
     act(mode, u, v) {
       this.stream.send({ type: mode, u, v });
       this.mark = { left: `${100 * u}%`, top: `${100 * v}%` };
@@ -190,12 +196,13 @@ export default {
       const notches = event.deltaY / (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 3 : 100);
       if (notches) this.stream.send({ type: "dolly", steps: -0.5 * Math.max(-3, Math.min(3, notches)) });
     },
+    /// Draws the magnifier beside the mouse.
     magnify() {
       if (!this.magnifier || !this.mouse) return;
       const { x, y, u, v } = this.mouse;
       const canvas = this.$refs.canvas, target = this.$refs.magnifier, box = this.$refs.stage.getBoundingClientRect();
       // The page scales the picture; the loupe magnifies relative to the scaled picture.
-      const size = (target.width / MAGNIFIED) * (canvas.width / box.width);
+      const size = (target.width / MAGNIFICATION) * (canvas.width / box.width);
       const side = (mouse, length) => (mouse + 16 + target.width < length ? mouse + 16 : mouse - 16 - target.width);
       const left = side(x - box.left, box.width), top = side(y - box.top, box.height);
       this.magnifierStyle = { left: `${left}px`, top: `${top}px` };
@@ -206,13 +213,13 @@ export default {
         0, 0, target.width, target.height);
     },
     key(event) {
-      const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+      const direction = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
       const turn = { "[": ["aperture", -1], "]": ["aperture", 1], ",": ["shutter", -1], ".": ["shutter", 1],
         i: ["iso", 1], I: ["iso", -1], z: ["zoom", 1], Z: ["zoom", -1] }[event.key];
       // On many keyboards, brackets are typed with these modifiers.
       if ((event.ctrlKey || event.metaKey || event.altKey) && !"[]".includes(event.key)) return;
-      if (way) {
-        this.stream.send({ type: event.shiftKey ? "pan" : "orbit", x: -KEY_STEP * way[0], y: -KEY_STEP * way[1] });
+      if (direction) {
+        this.stream.send({ type: event.shiftKey ? "pan" : "orbit", x: -KEY_STEP * direction[0], y: -KEY_STEP * direction[1] });
       } else if (turn) this.stream.send({ type: "turn", ring: turn[0], steps: turn[1] });
       else if (event.key === "+" || event.key === "=") this.stream.send({ type: "dolly", steps: 1 });
       else if (event.key === "-") this.stream.send({ type: "dolly", steps: -1 });

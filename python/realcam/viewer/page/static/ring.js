@@ -6,7 +6,7 @@ export default {
 <input class="rc-ring" type="range" min="0" :max="last" :value="at" :aria-label="label" :aria-valuetext="text"
   :title="help" @input="turn" @change="gestures += 1">`,
   data() {
-    return { turns: this.answered, turned: this.step, gestures: 0 };
+    return { turns: this.answered, turned: this.step, gestures: 0 }; // number of changes, last step set by the user, drags
   },
   computed: {
     /// Step to show: the user's own until the server has answered the last change.

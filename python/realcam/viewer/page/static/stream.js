@@ -1,32 +1,32 @@
 // WebSocket to the window's bench, shared by all components of the page. See stream.py for its protocol.
 
-const FIRST_WAIT_MS = 250;
-const KEPT = `what the window had: ${document.title}`; // the title contains the shot's name
-const LONGEST_WAIT_MS = 4000;
+const FIRST_WAIT_MS = 250; // before the first attempt to reconnect
+const STATE_KEY = `state of the window: ${document.title}`; // in the session's storage; the title contains the shot's name
+const MAX_WAIT_MS = 4000; // between attempts to connect
 
 class Stream {
   constructor(path) {
     this.path = path;
     this.listeners = new Map();
-    this.latest = new Map(); // for components that are mounted later
+    this.latest = new Map(); // last message of each type, for components that are mounted later
     this.wait = FIRST_WAIT_MS;
     this.framesShown = 0;
     this.shown = {}; // headers of the frames shown, by slot
-    this.isNew = true;
-    this.on("state", ({ state }) => sessionStorage.setItem(KEPT, JSON.stringify(state)));
+    this.isNew = true; // not connected yet
+    this.on("state", ({ state }) => sessionStorage.setItem(STATE_KEY, JSON.stringify(state)));
     this.connect();
   }
 
   /// Restores the state of the page before a reload, by its user or after a restart of the server.
   restore() {
-    const kept = sessionStorage.getItem(KEPT);
-    if (kept) this.send({ type: "restore", state: JSON.parse(kept) });
+    const state = sessionStorage.getItem(STATE_KEY);
+    if (state) this.send({ type: "restore", state: JSON.parse(state) });
   }
 
   /// Discards the stored state and reloads the page, which then shows the shot as in its file.
   startAgain() {
-    this.on("state", () => sessionStorage.removeItem(KEPT));
-    sessionStorage.removeItem(KEPT);
+    this.on("state", () => sessionStorage.removeItem(STATE_KEY));
+    sessionStorage.removeItem(STATE_KEY);
     location.reload();
   }
 
@@ -36,28 +36,29 @@ class Stream {
     this.socket.binaryType = "arraybuffer";
     this.socket.onopen = () => {
       this.wait = FIRST_WAIT_MS;
-      this.tell("connection", { isOpen: true });
+      this.notify("connection", { isOpen: true });
       if (this.isNew) this.restore();
       this.isNew = false;
     };
     this.socket.onmessage = (event) =>
       typeof event.data === "string" ? this.takeText(event.data) : this.takeFrame(event.data);
     this.socket.onclose = (event) => {
-      this.tell("connection", { isOpen: false });
+      this.notify("connection", { isOpen: false });
       if (event.code === 4404) {
         location.reload(); // the server was restarted and does not know this window
         return;
       }
       setTimeout(() => this.connect(), this.wait);
-      this.wait = Math.min(2 * this.wait, LONGEST_WAIT_MS);
+      this.wait = Math.min(2 * this.wait, MAX_WAIT_MS);
     };
   }
 
   takeText(text) {
     const message = JSON.parse(text);
-    this.tell(message.type, message);
+    this.notify(message.type, message);
   }
 
+  /// Decodes a frame, acknowledges it, and passes it to the listeners.
   async takeFrame(buffer) {
     const length = new DataView(buffer).getUint32(0, true);
     const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
@@ -70,10 +71,11 @@ class Stream {
     }
     this.framesShown += 1;
     this.shown[header.slot] = header;
-    this.tell("frame", { header, bitmap });
+    this.notify("frame", { header, bitmap });
   }
 
-  tell(type, message) {
+  /// Passes a message to the listeners of its type.
+  notify(type, message) {
     if (type !== "frame") this.latest.set(type, message);
     for (const listener of this.listeners.get(type) ?? []) listener(message);
   }
@@ -86,6 +88,7 @@ class Stream {
     return () => this.listeners.get(type).delete(listener);
   }
 
+  /// Sends a message to the server, unless the connection is lost.
   send(message) {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
@@ -93,6 +96,7 @@ class Stream {
 
 const streams = new Map();
 
+/// The stream with a path on the server, which all components share.
 export function streamAt(path) {
   if (!streams.has(path)) streams.set(path, new Stream(path));
   return streams.get(path);
