@@ -68,7 +68,7 @@ TEST_CASE("commands that make another lens are refused by their names and lines"
     CHECK(last.says("a.seq:18: has the command DEL S1, which makes another lens"));
     CHECK(read(replaced(kCodeV, "GO\n", "S1..2 3 4\nGO\n"), "a.seq").says("a range of surfaces"));
     CHECK(read(replaced(kCodeV, "GO\n", "THI S1..2 4\nGO\n"), "a.seq").says("a range of surfaces"));
-    CHECK(read(replaced(kCodeV, "GO\n", "DIM I\nGO\n"), "a.seq").says("DIM has to stand in front"));
+    CHECK(read(replaced(kCodeV, "GO\n", "DIM I\nGO\n"), "a.seq").says("DIM must precede the surfaces"));
     // What changes one surface is done.
     const LensSystem thicker = read(replaced(kCodeV, "GO\n", "THI S2 7\nRDY S2 60\nGO\n"), "a.seq").lens;
     CHECK(thicker.surfaces.at(0).thickness == 7);
