@@ -248,7 +248,7 @@ def test_bench_says_where_the_benchmarks_are(tmp_path: Path, python: Said, monke
         ("render scene.glb", "--output is required (realcam render --help lists the options)"),
         ("rendr", 'unknown command "rendr" (did you mean "render"'),
         ("lens lst", 'unknown command "lst" (did you mean "list"'),
-        ("render quad.obj -o a.png --spp 4 --noise 0.1", 'noise_codes, seconds and max_spp belong to spp "auto"'),
+        ("render quad.obj -o a.png --spp 4 --noise 0.1", 'noise_codes, seconds and max_spp need spp "auto"'),
         ("render quad.obj -o a.png --noise-codes 0", "noise_codes must be a number from 1e-9 on"),
         ("render quad.obj -o a.png --noise-codes nan", '--noise-codes must be a number; it is "nan"'),
         ("render quad.obj -o a.png --noise 0", "noise must be a number from 1e-9 on"),
