@@ -157,7 +157,7 @@ public:
     }
 
 private:
-    std::filesystem::path folder_;  ///< of the shot file
+    std::filesystem::path folder_;  ///< folder of the shot file
     const Changes* changes_;
 };
 

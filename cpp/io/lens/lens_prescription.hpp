@@ -75,7 +75,7 @@ struct Prescription {
     double aperture = 0;  ///< in the unit of aperture_kind
     FieldKind field_kind = FieldKind::angle_deg;
     std::vector<PrescriptionField> fields;
-    double image_semi_diameter = 0;  ///< of the image surface, mm; 0: not stated
+    double image_semi_diameter = 0;  ///< semi-diameter of the image surface, mm; 0: not stated
     double image_curvature = 0;  ///< curvature of the image surface, 1/mm
     SurfacePlacement image_placement;  ///< relative to the axis that leads to the image
     double wavelength_nm = kLineD_nm;

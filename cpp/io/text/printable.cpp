@@ -6,13 +6,14 @@
 namespace realcam::io {
 namespace {
 
-constexpr std::size_t kMostQuoted = 60;
+constexpr std::size_t kMaxQuotedBytes = 60;
 constexpr std::string_view kReplacement = "\xef\xbf\xbd";
 
-/// Cleans a text, and cuts it at the end of a character after `most` bytes.
-std::string cleaned(std::string_view bytes, std::size_t most) {
+/// Replaces control characters and invalid bytes (see printable), and truncates at the end of a character after
+/// `max_bytes` bytes.
+std::string sanitized(std::string_view bytes, std::size_t max_bytes) {
     std::string out;
-    while (!bytes.empty() && out.size() < most) {
+    while (!bytes.empty() && out.size() < max_bytes) {
         const std::size_t size = utf8_size(bytes);
         const bool is_control = size == 1 && (static_cast<unsigned char>(bytes[0]) < 0x20 || bytes[0] == 0x7f);
         // U+0080 to U+009F; U+0085 ends a line.
@@ -31,18 +32,18 @@ std::string cleaned(std::string_view bytes, std::size_t most) {
 }  // namespace
 
 std::string printable(std::string_view bytes) {
-    return cleaned(bytes, std::string_view::npos);
+    return sanitized(bytes, std::string_view::npos);
 }
 
 std::string in_quotes(std::string_view bytes) {
-    return '"' + cleaned(bytes, kMostQuoted) + '"';
+    return '"' + sanitized(bytes, kMaxQuotedBytes) + '"';
 }
 
 namespace {
 
-/// Removes the middle of a text that is longer than `longest`, and keeps `kept` characters at each end.
-std::string shortened(const std::string& text, std::size_t longest, std::size_t kept) {
-    if (text.size() <= longest) return text;
+/// Removes the middle of a text that is longer than `max_length`, and keeps `kept` characters at each end.
+std::string shortened(const std::string& text, std::size_t max_length, std::size_t kept) {
+    if (text.size() <= max_length) return text;
     return text.substr(0, kept) + "[... " + std::to_string(text.size() - 2 * kept) + " characters ...]" +
            text.substr(text.size() - kept);
 }

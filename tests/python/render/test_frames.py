@@ -304,5 +304,5 @@ def test_no_frame_replaces_a_file_that_the_film_is_made_from(folder: Path) -> No
     words = ["render", "lit.toml", "-o", "sky.png", "--frames", "1-3", "--again", "--device", "cpu"]
     done = subprocess.run([*PROGRAM, *words], capture_output=True, text=True)
     assert done.returncode == 2
-    assert '"sky.0002.png" is a file that the output is made from' in done.stderr
+    assert '"sky.0002.png" is also an input of this command' in done.stderr
     assert (folder / "sky.0002.png").read_bytes() == before

@@ -738,7 +738,7 @@ private:
     std::vector<double> zoom_apertures_;
     std::vector<double> private_wavelengths_nm_;
     std::set<std::string> private_names_;
-    std::map<std::string, LensFileError> private_glass_errors_;  ///< of invalid private glasses, by name
+    std::map<std::string, LensFileError> private_glass_errors_;  ///< error of each invalid private glass, by name
 };
 
 }  // namespace

@@ -89,7 +89,7 @@ public:
     struct Row {
         std::string_view keywords;
         Function read = nullptr;
-        std::string_view description = {};  ///< of the feature, a noun phrase for messages
+        std::string_view description = {};  ///< noun phrase for the feature, for messages
     };
 
     Keywords(std::initializer_list<Row> rows) {
