@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// True if both names denote the same file, even if it does not exist yet.
+/// True if both paths denote the same file, even if it does not exist yet.
 bool same_file(const std::string& a, const std::string& b) {
     std::error_code error;
     if (fs::equivalent(a, b, error)) return true;
@@ -47,6 +47,7 @@ std::string settings_digest(const shot::ShotRequest& request, const Camera& came
     text.precision(17);  // distinguishes all doubles
     for (const auto& [name, value] : io::metadata_of(camera, request.settings).entries())
         if (name != "realcam:version") text << name << '=' << value << '\n';
+    // Settings that the metadata lack; -1 stands for a value that is not specified.
     const RenderSettings& s = request.settings;
     const Vec3f light = request.environment_cd_m2.value_or(Vec3f{-1, -1, -1});
     text << camera.film.width << ' ' << camera.film.height << ' ' << request.scale << ' ' << light.x << ' ' << light.y
@@ -73,11 +74,11 @@ std::string settings_digest(const shot::ShotRequest& request, const Camera& came
     std::vector<std::string> contents;
     for (const std::string& path : io::recorded_inputs()) {
         io::RegularFile file(path);
-        const std::uint64_t before = std::exchange(digest, kOffsetBasis);
+        const std::uint64_t settings_hash = std::exchange(digest, kOffsetBasis);
         std::string buffer(1 << 20, '\0');
         while (const std::size_t n = file.read(buffer.data(), buffer.size()))
             add(std::string_view(buffer).substr(0, n));
-        contents.push_back(std::to_string(std::exchange(digest, before)));
+        contents.push_back(std::to_string(std::exchange(digest, settings_hash)));
     }
     std::sort(contents.begin(), contents.end());
     for (const std::string& content : contents) add(content + '\n');

@@ -192,7 +192,7 @@ private:
         if (const std::string notice = shot::view_notice(shot); !notice.empty()) inform(notice);
         if (shot.has_daylight)
             inform(
-                "the scene holds no light; daylight is added: a sun of 80 klux from the upper left, and a sky of 5000 "
+                "the scene has no light; daylight is added: a sun of 80 klux from the upper left, and a sky of 5000 "
                 "cd/m^2");
         return shot;
     }
@@ -238,9 +238,10 @@ private:
 
     /// True if the file is a complete picture of the current frame, taken with the current settings.
     bool is_complete_frame(const std::string& file) const {
-        return is_file(file) && until_interrupted([&] {
-                                    return image_io::entry_of_whole_file(file, "realcam:film", is_not_interrupted);
-                                }) == frame_digest_;
+        return is_file(file) &&
+               until_interrupted([&] {
+                   return image_io::entry_of_complete_picture(file, "realcam:film", is_not_interrupted);
+               }) == frame_digest_;
     }
 
     /// Takes all frames that are not complete yet (with --again, all frames), and encodes the videos.
@@ -258,9 +259,9 @@ private:
         }
         outputs_.create_frame_folders();
         const std::uint32_t seed = request.settings.seed;
-        std::optional<shot::FollowedIso> followed;
+        std::optional<shot::FollowedIso> auto_iso;
         if (request.iso_follows_s)
-            followed.emplace(tools.session, shot.scene, camera, request.keys, request.settings,
+            auto_iso.emplace(tools.session, shot.scene, camera, request.keys, request.settings,
                              options_.frames_per_second, *request.iso_follows_s);
         std::size_t complete = 0, outdated = 0;
         std::string all_reports;
@@ -277,9 +278,9 @@ private:
             }
             start_ = std::chrono::steady_clock::now();
             shot.camera = camera_of_frame(camera, request, frame);
-            if (followed)
+            if (auto_iso)
                 shot.camera.iso =
-                    until_interrupted([&] { return followed->at(frame, [](double) { return is_not_interrupted(); }); });
+                    until_interrupted([&] { return auto_iso->at(frame, [](double) { return is_not_interrupted(); }); });
             request.settings.seed = shot::frame_seed(seed, frame);
             const std::string report = take_and_write(tools, shot, request, plan_summary, files);
             if (options_.as_json)

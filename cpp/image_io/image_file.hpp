@@ -94,8 +94,8 @@ FilmFile read_film(const std::string& path, const KeepGoing& keep_going = {});
 
 /// Returns the value of a metadata entry of a picture file whose pixels can all be decoded; std::nullopt if it has no
 /// entry of this name, or is not a complete picture. Throws Cancelled.
-std::optional<std::string> entry_of_whole_file(const std::string& path, const std::string& name,
-                                               const KeepGoing& keep_going = {});
+std::optional<std::string> entry_of_complete_picture(const std::string& path, const std::string& name,
+                                                     const KeepGoing& keep_going = {});
 
 /// Throws ImageFileError if write_image could not write this path; called before rendering.
 void check_image_path(const std::string& path);

@@ -197,8 +197,8 @@ bool has_last_png_chunk(const std::string& path) {
 
 }  // namespace
 
-std::optional<std::string> entry_of_whole_file(const std::string& path, const std::string& name,
-                                               const KeepGoing& keep_going) {
+std::optional<std::string> entry_of_complete_picture(const std::string& path, const std::string& name,
+                                                     const KeepGoing& keep_going) {
     try {
         const auto picture = open_picture(path, {});
         const auto entry = std::find_if(picture->entries.begin(), picture->entries.end(),
