@@ -16,7 +16,7 @@ constexpr std::string_view kBeautyNames[] = {"beauty", "combined", "rgba", "rgb"
 
 /// Lower-case channel names of red, green and blue, or of X, Y and Z.
 constexpr std::array<std::string_view, 3> kColourNames[] = {{"r", "g", "b"}, {"red", "green", "blue"}, {"x", "y", "z"}};
-constexpr std::size_t kTristimulus = 2;
+constexpr std::size_t kTristimulus = 2;  // index of X, Y and Z in kColourNames
 
 std::string lower(std::string text) {
     std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -29,9 +29,10 @@ std::string last_component(const std::string& name) {
 
 /// Layer of an OpenEXR file: the channels of one prefix in one part.
 struct Layer {
-    std::string name;  // empty: channels without a prefix in a file of one part
-    std::size_t part;
-    std::vector<std::pair<std::string, int>> channels = {};  // names in lower case without the prefix
+    std::string name;  // part name and prefix; empty: channels without a prefix in a file of one part
+    std::size_t part;  // index
+    std::vector<std::pair<std::string, int>> channels =
+        {};  // names in lower case without the prefix, and indices in the part
     bool has_whole_numbers = false;
 
     /// Index of a channel in its part; -1 if the layer does not have it.
@@ -40,10 +41,11 @@ struct Layer {
             if (name == channel) return index;
         return -1;
     }
+    /// Index of the alpha channel; -1 if there is none.
     int alpha() const { return std::max(find("a"), find("alpha")); }
 
-    /// Returns the channels of red, green and blue, or an empty list. X, Y and Z are tristimulus values only without a
-    /// prefix: with a prefix they are vectors.
+    /// Returns the channels of red, green and blue, or of X, Y and Z; an empty list if there are none. Channels X, Y
+    /// and Z with a prefix are not tristimulus values but vectors.
     std::vector<int> colours() const {
         for (const auto& names : kColourNames) {
             if (&names == &kColourNames[kTristimulus] && !name.empty()) continue;
@@ -103,6 +105,7 @@ std::string names_of(const std::vector<const Layer*>& layers) {
     return out + (layers.size() > kMaxListed ? " and " + std::to_string(layers.size() - kMaxListed) + " more" : "");
 }
 
+/// Returns the layers for which the predicate is true.
 template <class Predicate>
 std::vector<const Layer*> filtered(const std::vector<const Layer*>& layers, Predicate predicate) {
     std::vector<const Layer*> out;
@@ -110,6 +113,7 @@ std::vector<const Layer*> filtered(const std::vector<const Layer*>& layers, Pred
     return out;
 }
 
+/// True if the layer has a name with which renderers denote the complete light.
 bool is_beauty(const Layer& layer) {
     return std::ranges::find(kBeautyNames, lower(last_component(layer.name))) != std::end(kBeautyNames);
 }
@@ -122,7 +126,7 @@ const Layer& select_layer(const std::vector<const Layer*>& pictures, const std::
         throw Error((named.empty() ? "has no layer " : "has several layers ") + io::in_quotes(requested) +
                     "; its layers are " + names_of(pictures));
     }
-    // Cryptomatte stores hashes as red, green and blue.
+    // Cryptomatte layers are excluded: they store hashes as red, green and blue.
     const auto light = filtered(pictures, [](const Layer& l) {
         return !lower(l.name).starts_with("crypto") && !lower(last_component(l.name)).starts_with("crypto");
     });

@@ -10,6 +10,7 @@
 namespace realcam::io {
 namespace {
 
+/// Throws LensFileError, at the line and surface of a row if there is one.
 [[noreturn]] void fail(const Prescription& p, const std::string& message, const PrescriptionSurface* row = nullptr) {
     throw LensFileError(message, p.file, row ? row->line : 0, row ? row->number : 0);
 }
@@ -21,7 +22,8 @@ double thickness(const Prescription& p, int row, std::size_t position) {
     return row < 0 ? p.object_distance : p.surfaces[static_cast<std::size_t>(row)].thickness;
 }
 
-/// Sets the size of the stop by first-order optics, as lens-design programs do.
+/// Sets the radius of the stop from the file's aperture by first-order optics, as lens-design programs do. `object`:
+/// object distance, mm. Throws LensFileError if it cannot be determined.
 void set_stop(const Prescription& p, const std::vector<SurfaceRow>& surface_rows, LensSystem& lens, double object,
               std::size_t position) {
     const int stop = lens.stop_index(), count = static_cast<int>(lens.surfaces.size());
@@ -30,10 +32,12 @@ void set_stop(const Prescription& p, const std::vector<SurfaceRow>& surface_rows
     const auto trace = [&](ParaxialRay ray, int last) {
         return trace_paraxial(lens, lens.wavelength_nm, ray, 0, last);
     };
+    // A marginal ray from the axial object point, of arbitrary size.
     const ParaxialRay start = std::isinf(object) ? ParaxialRay{1, 0} : ParaxialRay{object, 1};
     const double at_stop = std::fabs(trace(start, stop + 1).height);
-    const double pupil = std::fabs(trace({1, 0}, stop + 1).height);  // height at the stop over height in the pupil
-    const double behind = lens.indices(lens.wavelength_nm).back();
+    const double pupil =
+        std::fabs(trace({1, 0}, stop + 1).height);  // ray height at the stop over that in the entrance pupil
+    const double image_index = lens.indices(lens.wavelength_nm).back();
     const auto marginal_slope = [&](double numerical) {
         if (!(numerical > 0 && numerical < 1)) fail(p, "the numerical aperture must lie between 0 and 1");
         return std::tan(std::asin(numerical));
@@ -43,13 +47,13 @@ void set_stop(const Prescription& p, const std::vector<SurfaceRow>& surface_rows
         case ApertureKind::stop_size: radius = aperture > 0 ? aperture : surface.clear_semi_diameter; break;
         case ApertureKind::entrance_pupil_diameter: radius = 0.5 * aperture * pupil; break;
         case ApertureKind::f_number:
-            radius = 0.5 / (aperture * behind * std::fabs(trace({1, 0}, count).slope)) * pupil;
+            radius = 0.5 / (aperture * image_index * std::fabs(trace({1, 0}, count).slope)) * pupil;
             break;
         case ApertureKind::working_f_number:
-            radius = 0.5 / (aperture * behind * std::fabs(trace(start, count).slope)) * at_stop;
+            radius = 0.5 / (aperture * image_index * std::fabs(trace(start, count).slope)) * at_stop;
             break;
         case ApertureKind::image_aperture:
-            radius = marginal_slope(aperture / behind) / std::fabs(trace(start, count).slope) * at_stop;
+            radius = marginal_slope(aperture / image_index) / std::fabs(trace(start, count).slope) * at_stop;
             break;
         case ApertureKind::object_aperture:
             if (std::isinf(object))
@@ -76,20 +80,20 @@ void set_stop(const Prescription& p, const std::vector<SurfaceRow>& surface_rows
 }  // namespace
 
 std::vector<SurfaceRow> surface_rows(const Prescription& p) {
-    std::vector<SurfaceRow> surface_rows;
+    std::vector<SurfaceRow> rows;
     const Glass air = Glass::air();
-    const Glass* before = &air;
+    const Glass* medium_before = &air;
     for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
         const PrescriptionSurface& row = p.surfaces[i];
-        const bool bends_light = row.is_mirror || !(row.material == *before);
-        if (row.is_stop) surface_rows.push_back({i, SurfaceType::stop});
+        const bool bends_light = row.is_mirror || !(row.material == *medium_before);
+        if (row.is_stop) rows.push_back({i, SurfaceType::stop});
         if (bends_light)
-            surface_rows.push_back({i, row.is_mirror ? SurfaceType::mirror : SurfaceType::refracting});
+            rows.push_back({i, row.is_mirror ? SurfaceType::mirror : SurfaceType::refracting});
         else if (!row.is_stop && row.has_aperture)
-            surface_rows.push_back({i, SurfaceType::aperture});
-        if (!row.is_mirror) before = &row.material;
+            rows.push_back({i, SurfaceType::aperture});
+        if (!row.is_mirror) medium_before = &row.material;
     }
-    return surface_rows;
+    return rows;
 }
 
 LensConfiguration lens_configuration(const Prescription& p, const std::vector<SurfaceRow>& surface_rows,
@@ -107,7 +111,7 @@ LensConfiguration lens_configuration(const Prescription& p, const std::vector<Su
     last = 0;
     if (std::isfinite(object) && object <= 0)
         fail(p, "the object lies " + std::to_string(-object) +
-                    " mm behind the first surface; expected an object in front");
+                    " mm image_index the first surface; expected an object in front");
     set_stop(p, surface_rows, lens, object, position);
     if (p.paraxial_image && lens.film_distance == p.defocus)
         lens.film_distance = p.defocus + paraxial_image_distance(lens, lens.wavelength_nm, object);

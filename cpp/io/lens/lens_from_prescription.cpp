@@ -50,23 +50,24 @@ void report_unsupported(const std::vector<UnsupportedFeature>& features, const s
 }
 
 /// Converts a prescription to a lens. Zoom positions become configurations of the same surfaces.
-class Builder {
+class PrescriptionConverter {
 public:
-    Builder(const Prescription& p, const LensReadOptions& options)
+    PrescriptionConverter(const Prescription& p, const LensReadOptions& options)
         : p_(p),
           options_(options),
           unsupported_(p.unsupported),
           surface_rows_(surface_rows(p)),
           checkpoint_(options.keep_going) {}
 
+    /// Throws LensFileError, InputError and Cancelled.
     LensSystem build() {
         make_surfaces();
-        reject_unsupported();
+        set_shapes();
         check_table();
-        lens_.name = lens_.title = printable(p_.title);
+        lens_.title = printable(p_.title);
         const std::size_t slash = p_.file.find_last_of('/');
-        const std::string base = p_.file.substr(slash == p_.file.npos ? 0 : slash + 1);
-        lens_.name = printable(base.substr(0, base.find_last_of('.')));
+        const std::string file_name = p_.file.substr(slash == p_.file.npos ? 0 : slash + 1);
+        lens_.name = printable(file_name.substr(0, file_name.find_last_of('.')));
         if (lens_.name.empty()) lens_.name = "lens";
         lens_.wavelength_nm = p_.wavelength_nm;
         if (!(lens_.wavelength_nm >= 100 && lens_.wavelength_nm <= 20000))
@@ -85,6 +86,7 @@ public:
     }
 
 private:
+    /// Throws LensFileError, at the line and surface of a row if there is one.
     [[noreturn]] void fail(const std::string& message, const PrescriptionSurface* row = nullptr) const {
         throw LensFileError(message, p_.file, row ? row->line : 0, row ? row->number : 0);
     }
@@ -144,7 +146,7 @@ private:
             Surface surface;
             surface.type = surface_row.type;
             surface.clear_semi_diameter = row.clear_semi_diameter;
-            // If a surface is also a stop, rim and hole belong to the surface.
+            // If a row is a stop and a face, its obscuration belongs to the face.
             const bool is_extra_plane = surface_row.type == SurfaceType::stop && bends_light(surface_row.row);
             surface.inner_semi_diameter = is_extra_plane ? 0 : row.inner_semi_diameter;
             if (surface.bends_light()) {
@@ -166,14 +168,14 @@ private:
     }
 
     /// Sets the shapes of the surfaces, and reports all features that realcam does not model (report_unsupported).
-    void reject_unsupported() {
+    void set_shapes() {
         for (std::size_t i = 0; i < surface_rows_.size(); ++i) {
             if (!lens_.surfaces[i].bends_light()) continue;
             const PrescriptionSurface& row = row_of(i);
             const double rim =
                 row.clear_semi_diameter > 0 ? row.clear_semi_diameter : kGuessedFraction * known_pupil_diameter();
-            const std::string what = set_aspheric_terms(row, rim, lens_.surfaces[i]);
-            if (!what.empty()) unsupported_.push_back({what, row.line, row.number});
+            const std::string error = set_aspheric_terms(row, rim, lens_.surfaces[i]);
+            if (!error.empty()) unsupported_.push_back({error, row.line, row.number});
             store_asymmetric_form(i);
         }
         report_unsupported(unsupported_, p_.file, options_);
@@ -428,7 +430,7 @@ LensSystem lens_from(Prescription prescription, const LensReadOptions& options) 
                                        " is assumed");
     }
     try {
-        return Builder(prescription, options).build();
+        return PrescriptionConverter(prescription, options).build();
     } catch (const InputError& error) {  // a glass without an index, or a field that no ray reaches
         throw LensReadError(error, prescription.file);
     }

@@ -24,7 +24,8 @@ void add_plane_before_film(LensSystem& lens, const SurfacePlacement& placement, 
     plane.type = SurfaceType::aperture;
     double reach = hypotenuse(lens.film_width, lens.film_height);
     for (const Surface& surface : lens.surfaces) reach = std::max(reach, surface.clear_semi_diameter);
-    plane.clear_semi_diameter = 100 * (reach + std::fabs(lens.film_distance));
+    constexpr double kUnlimited = 100;  // times the size of the lens
+    plane.clear_semi_diameter = kUnlimited * (reach + std::fabs(lens.film_distance));
     plane.placement = placement;
     lens.surfaces.back().thickness = thickness;
     lens.surfaces.push_back(plane);
@@ -44,9 +45,9 @@ bool is_displaced(const PrescriptionSurface& row) {
 
 void set_placements(const Prescription& p, const std::vector<SurfaceRow>& surface_rows, LensSystem& lens) {
     Affine<double> from_last;      // from the frame of the current row to the axis behind the last surface
-    double thickness = 0;    // along that path, as if it were straight
-    bool is_straight = true;  // true while there are only thicknesses
-    std::size_t next = 0;
+    double thickness = 0;         // sum of the thicknesses since then
+    bool is_straight = true;      // true if no tilt or decentre has followed since then
+    std::size_t next = 0;         // index of the next surface
     for (std::size_t row = 0; row < p.surfaces.size(); ++row) {
         const PrescriptionSurface& current = p.surfaces[row];
         const bool returns = current.behind == inverse_motion(current.before) && !(current.before == Affine<double>{});

@@ -52,6 +52,7 @@ std::string convert_square_term(double a2, double height, Surface& surface) {
     if (new_curvature != 0) surface.conic = square / (new_curvature * new_curvature) - 1;
     if (square == 0) return {};
     if (!(q_rim < 1)) return "a term of r^2 on a conic that ends inside the clear semi-diameter";
+    // 1 / (1 + S)^2 at a fraction of the squared height.
     const auto exact = [&](double fraction) {
         const double root = std::sqrt(1 - fraction * q_rim);
         return 1 / ((1 + root) * (1 + root));
@@ -60,16 +61,16 @@ std::string convert_square_term(double a2, double height, Surface& surface) {
     surface.aspheric.resize(static_cast<std::size_t>(kMaxAsphericTerms), 0.0);
     for (std::size_t j = 0; j < terms.size(); ++j)
         surface.aspheric[j] -= a2 * square * terms[j] * std::pow(height, -2.0 * static_cast<double>(j));
-    double difference = 0;
+    double max_error_mm = 0;
     constexpr int kSamples = 64;
     for (int i = 0; i <= kSamples; ++i) {
         const double fraction = static_cast<double>(i) / kSamples;  // fraction of the squared height
         double value = 0;
         for (std::size_t j = terms.size(); j-- > 0;) value = value * fraction + terms[j];
-        difference = std::max(
-            difference, std::fabs(a2 * q_rim * height * height * fraction * fraction * (value - exact(fraction))));
+        max_error_mm = std::max(
+            max_error_mm, std::fabs(a2 * q_rim * height * height * fraction * fraction * (value - exact(fraction))));
     }
-    if (difference <= kMaxSagError_mm) return {};
+    if (max_error_mm <= kMaxSagError_mm) return {};
     return "a term of r^2 on a conic so steep that no terms up to r^" + std::to_string(kMaxPower) + " replace it";
 }
 

@@ -17,6 +17,7 @@ namespace {
 /// Factor for the semi-diameters, so that rounding does not block the ray at the edge.
 constexpr double kMargin = 1 + 1e-9;
 
+/// Distance of a field point from the axis, in degrees or mm.
 double field_size(const PrescriptionField& field) {
     return hypotenuse(field.x, field.y);
 }
@@ -28,18 +29,22 @@ LensSystem with_unlimiting_rims(LensSystem lens, double largest_angle) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     const int count = static_cast<int>(lens.surfaces.size());
     const double pupil = 0.5 * data.entrance_pupil_diameter;
-    const double slope = std::tan(std::min(std::fabs(largest_angle), 1.2));
+    constexpr double kMaxAngle = 1.2;  // radians; the slope of wider fields would be too large for first-order optics
+    const double slope = std::tan(std::min(std::fabs(largest_angle), kMaxAngle));
     for (int i = 0; i < count; ++i) {
         Surface& s = lens.surfaces[static_cast<std::size_t>(i)];
         if (s.type == SurfaceType::stop) continue;
         const double marginal = trace_paraxial(lens, lens.wavelength_nm, {pupil, 0}, 0, i + 1).height;
         const double chief =
             trace_paraxial(lens, lens.wavelength_nm, {-slope * data.entrance_pupil_position, slope}, 0, i + 1).height;
+        // Twice the paraxial height allows for aberrations.
         double rim = 2 * (std::fabs(marginal) + std::fabs(chief)) + 1e-3 * pupil;
         if (!std::isfinite(rim) || !s.is_asphere()) rim = std::max(rim, 1e3 * (pupil + lens.last_vertex()));
-        if (!std::isfinite(rim)) rim = 1e6;
-        const double bent = (1 + s.conic) * s.curvature * s.curvature;
-        if (bent > 0) rim = std::min(rim, (1 - 1e-9) / std::sqrt(bent));
+        constexpr double kUnlimited_mm = 1e6;
+        if (!std::isfinite(rim)) rim = kUnlimited_mm;
+        // A conic ends at r = 1 / sqrt((1 + k) c^2).
+        const double inverse_square = (1 + s.conic) * s.curvature * s.curvature;
+        if (inverse_square > 0) rim = std::min(rim, (1 - 1e-9) / std::sqrt(inverse_square));
         s.clear_semi_diameter = std::max(rim, kShortestRadius);
         s.inner_semi_diameter = 0;
     }
@@ -50,7 +55,8 @@ LensSystem with_unlimiting_rims(LensSystem lens, double largest_angle) {
 /// each surface.
 class FieldBundles {
 public:
-    /// `only_passing`: only rays that pass the rims of the lens count.
+    /// `object_distance`: to the front vertex, mm. `largest`: size of the largest field, in the unit of `kind`.
+    /// `only_passing`: record only rays that pass the rims of the lens.
     FieldBundles(const LensSystem& lens, double object_distance, FieldKind kind, double largest, bool only_passing,
                  Checkpoint& checkpoint)
         : lens_(lens),
@@ -102,15 +108,16 @@ private:
     }
 
     const LensSystem& lens_;
-    LensSystem unlimited_lens_;
+    LensSystem unlimited_lens_;  ///< see with_unlimiting_rims
     double object_distance_;
     FieldKind kind_;
     Checkpoint& checkpoint_;
     RayHeights result_;
-    std::vector<TracePath<double>> paths_to_surfaces_;
-    std::optional<TracePath<double>> whole_lens_path_;
+    std::vector<TracePath<double>> paths_to_surfaces_;  ///< from the object through each surface
+    std::optional<TracePath<double>> whole_lens_path_;  ///< with the lens's rims; std::nullopt: all rays are recorded
 };
 
+/// Greatest field_size; 0 without fields.
 double largest_field(const std::vector<PrescriptionField>& fields) {
     double largest = 0;
     for (const PrescriptionField& field : fields) largest = std::max(largest, field_size(field));

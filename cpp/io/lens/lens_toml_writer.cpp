@@ -44,6 +44,7 @@ public:
     }
 
 private:
+    // Lines of a table: a key and its value.
     static std::string key(const std::string& name, const std::string& value) { return name + " = " + value + '\n'; }
     static std::string number(const std::string& name, double value) { return key(name, toml_number(value)); }
 
@@ -51,6 +52,7 @@ private:
         return '[' + toml_number(v.x) + ", " + toml_number(v.y) + ", " + toml_number(v.z) + ']';
     }
 
+    /// A text in quotes. Throws InputError if no lens file can hold it.
     static std::string text(const std::string& value) {
         if (!is_utf8(value) || printable(value) != value)
             throw InputError("the text " + in_quotes(value) +
@@ -66,13 +68,13 @@ private:
     /// Zoom position, focus distance and aperture, where they differ from the reader's defaults.
     std::string write_rings() const {
         std::string rings;
-        double rest = kInfinity;
+        double default_distance = kInfinity;
         if (!lens_.zoom.positions.empty()) {
             const ZoomPosition& current = lens_.zoom.positions[static_cast<std::size_t>(lens_.zoom.current)];
             rings += key("zoom_position", text(current.name));
-            rest = current.focus_distance;
+            default_distance = current.focus_distance;
         }
-        if (lens_.focus_distance != rest)
+        if (lens_.focus_distance != default_distance)
             rings +=
                 key("focus_distance_mm", std::isinf(lens_.focus_distance) ? "inf" : toml_number(lens_.focus_distance));
         if (lens_.stop_semi_diameter != lens_.stop().clear_semi_diameter)
@@ -132,13 +134,13 @@ private:
         }
         for (std::size_t i = 0; i < file_glasses_.size(); ++i)
             if (file_glasses_[i].second == glass) return text(file_glasses_[i].first);
-        if (is_catalogued(glass)) return text(glass.label);
+        if (uses_catalogue_name(glass)) return text(glass.label);
         return text(add_glass(glass));
     }
 
-    /// True if the catalogue has this glass. A glass table of the file takes precedence over the catalogue, so a name
-    /// must not be used for both.
-    bool is_catalogued(const Glass& glass) {
+    /// True if the glass can be written by its catalogue name, which is then reserved: a glass table of the file takes
+    /// precedence over the catalogue, so that no table may have the same name.
+    bool uses_catalogue_name(const Glass& glass) {
         if (used_names_.contains(glass.label) || !catalogue_name_of(glass)) return false;
         catalogue_names_.insert(glass.label);
         return true;
@@ -182,6 +184,7 @@ private:
         return name;
     }
 
+    /// Complex indices as an array of [wavelength in nm, n, k].
     static std::string points(const CoatingMaterial& material) {
         std::string rows;
         for (const CoatingMaterial::Point& p : material.points)

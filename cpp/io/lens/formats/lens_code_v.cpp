@@ -49,6 +49,7 @@ std::optional<AbbePair> fictitious_glass(const std::string& name) {
     return AbbePair{std::stod("1." + index), std::stod(abbe.substr(0, 2) + '.' + abbe.substr(2))};
 }
 
+/// Reads all commands first, and converts the surfaces at the end of the file.
 class CodeVReader : PrescriptionText {
 public:
     using PrescriptionText::PrescriptionText;
@@ -74,6 +75,7 @@ public:
     }
 
 private:
+    // Short names for the tables of keywords.
     using R = CodeVReader;
     using C = LensCommand;
     using WordList = std::vector<LensWord>;

@@ -16,6 +16,7 @@
 namespace realcam::io {
 namespace {
 
+/// Converts the file's objects one after the other; placements are set when all frames are known.
 class OptilandReader : PrescriptionJson {
 public:
     using PrescriptionJson::PrescriptionJson;

@@ -51,6 +51,7 @@ bool is_keyword_with_number(std::string_view word, std::string_view name) {
     return word.starts_with(name) && is_digits(word.substr(name.size()));
 }
 
+/// Reads all commands first, and converts the surfaces at the end of the file.
 class OsloReader : PrescriptionText {
 public:
     using PrescriptionText::PrescriptionText;
@@ -65,6 +66,7 @@ public:
     }
 
 private:
+    // Short names for the tables of keywords.
     using R = OsloReader;
     using C = LensCommand;
 

@@ -54,6 +54,7 @@ double value_or_0(const std::map<int, double>& values, int number) {
     return found == values.end() ? 0.0 : found->second;
 }
 
+/// Reads the surfaces in the file's order first; their conversion needs all of them.
 class ZemaxReader : PrescriptionText {
 public:
     using PrescriptionText::PrescriptionText;
@@ -77,6 +78,7 @@ public:
     }
 
 private:
+    // Short names for the tables of keywords.
     using R = ZemaxReader;
     using C = LensCommand;
 
@@ -89,6 +91,7 @@ private:
     }
 
     ZemaxSurface& last_surface() { return surfaces_.back(); }
+    /// Row of the last surface, to which commands apply.
     PrescriptionSurface& row() { return surfaces_.back().row; }
     // Return lengths in mm. `name`: noun phrase for messages.
     double length(const C& c, std::size_t i, const char* name) const { return unit_ * c.number(i, name); }
