@@ -128,7 +128,7 @@ void set_up(CLI::App& app, const FilmWriter* video_writer = nullptr) {
     add_render_command(app, video_writer);
     add_plan_command(app);
     add_lens_command(app);
-    CLI::App* devices = app.add_subcommand("devices", "List what this machine can render with.");
+    CLI::App* devices = app.add_subcommand("devices", "List the devices of this machine for rendering.");
     const auto as_json = std::make_shared<bool>(false);
     devices->add_flag("--json", *as_json, "Print JSON");
     set_examples(*devices, {"realcam devices", "realcam devices --json"});
@@ -138,9 +138,9 @@ void set_up(CLI::App& app, const FilmWriter* video_writer = nullptr) {
 /// Appends all commands below `command` that have no subcommands. `words`: the words that lead to `command`.
 void collect_commands(const CLI::App& command, std::vector<std::string> words, std::vector<ListedCommand>& listed) {
     const std::vector<const CLI::App*> subcommands = command.get_subcommands({});
-    for (const CLI::App* one : subcommands) {
-        words.push_back(one->get_name());
-        collect_commands(*one, words, listed);
+    for (const CLI::App* subcommand : subcommands) {
+        words.push_back(subcommand->get_name());
+        collect_commands(*subcommand, words, listed);
         words.pop_back();
     }
     if (!subcommands.empty()) return;
@@ -150,6 +150,7 @@ void collect_commands(const CLI::App& command, std::vector<std::string> words, s
             entry.options.push_back({names_of(*option), type_of(*option), option->get_description()});
 }
 
+/// Parses the arguments and runs the command. Returns the exit code; errors of the command are thrown.
 int run(int argc, char** argv, const FilmWriter* video_writer) {
     CLI::App app;
     set_up(app, video_writer);

@@ -54,7 +54,8 @@ void expand_to_rgba(int channels, Value opaque, Value* rgba) {
 
 /// Limits a value to 0 to the largest half float; NaN becomes 0.
 float usable_light(float v) {
-    return v > 0 ? std::min(v, 65504.0f) : 0.0f;
+    constexpr float kMaxHalf = 65504.0f;
+    return v > 0 ? std::min(v, kMaxHalf) : 0.0f;
 }
 
 /// Limits an alpha value to 0 to 1; NaN becomes 0.
@@ -84,8 +85,9 @@ std::vector<float> decode_floats(OpenPicture& picture, const KeepGoing& keep_goi
     return pixels;
 }
 
+/// Decodes a picture for a texture: 8-bit RGBA, or floats if the file has more than 8 bits.
 io::DecodedImage decode(OpenPicture& picture, const KeepGoing& keep_going) {
-    // A Texture holds 8-bit values, which exist beside the floats for a while.
+    // Bytes per pixel: the 8-bit values of a Texture exist beside the floats for a while.
     constexpr std::size_t code_bytes = 4, float_bytes = 4 * sizeof(float) + code_bytes;
     check_size(picture, io::kMostTexturePixels, picture.is_wide ? float_bytes : code_bytes);
     if (!picture.is_wide) return {picture.width, picture.height, decode_codes(picture, keep_going)};
@@ -93,6 +95,7 @@ io::DecodedImage decode(OpenPicture& picture, const KeepGoing& keep_going) {
             picture.channels < 3 ? std::nullopt : picture.rec709};
 }
 
+/// Decodes a picture to radiance in linear Rec. 709, with realcam's directions.
 Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going) {
     const bool linear = picture.is_linear, grey = picture.channels < 3;
     check_size(picture, kMaxEnvironmentPixels, sizeof(Color));
@@ -102,8 +105,9 @@ Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going
     environment.pixels.resize(picture.pixel_count());
     static_assert(sizeof(Color) == 3 * sizeof(float));
     picture.read(grey ? 1 : 3, 3, &environment.pixels.data()->r, keep_going);
-    const auto light = [&](float v) { return linear ? v : io::linear_of_srgb(v); };
-    for (Color& p : environment.pixels) p = {light(p.r), light(grey ? p.r : p.g), light(grey ? p.r : p.b)};
+    const auto linear_value = [&](float v) { return linear ? v : io::linear_of_srgb(v); };
+    for (Color& p : environment.pixels)
+        p = {linear_value(p.r), linear_value(grey ? p.r : p.g), linear_value(grey ? p.r : p.b)};
     if (picture.rec709 && !grey)
         apply_matrix(*picture.rec709, &environment.pixels.data()->r, environment.pixels.size(), 3);
     return environment_of(picture.environment_map, std::move(environment), keep_going);
@@ -115,9 +119,11 @@ constexpr float kMaxRadiance_cd_m2 = 1e20f;  // same limit as in scene_checks.hp
 struct InvalidPixels {
     std::size_t count = 0, first = 0;
 
+    /// Counts a pixel by its index.
     void add(std::size_t pixel) {
         if (count++ == 0) first = pixel;
     }
+    /// Position and value of the first pixel, as the continuation of counted_pixels.
     std::string text(const Environment& environment) const {
         const Color& p = environment.pixels[first];
         const auto width = static_cast<std::size_t>(environment.width);
@@ -128,6 +134,7 @@ struct InvalidPixels {
     }
 };
 
+/// "1 pixel is", "2 pixels are"
 std::string counted_pixels(std::size_t count) {
     return std::to_string(count) + (count == 1 ? " pixel is" : " pixels are");
 }

@@ -116,7 +116,7 @@ Assembly assemble(const FileScene& file, const SceneFileOptions& options, const 
     visit_nodes(whole_scene, [&](std::uint32_t node, const Affine<double>& transform) {
         const LeftOut left_out = part_left_out(node, transform);
         if (left_out != LeftOut::nothing) objects.add(node, transform, static_geometry);
-        return left_out != LeftOut::whole_scene;
+        return left_out != LeftOut::all;
     });
     read_geometry(static_geometry, whole_scene, part_left_out);
     read_lights(static_geometry, whole_scene, part_left_out);

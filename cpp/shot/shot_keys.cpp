@@ -94,6 +94,8 @@ void to_noise(Table t, Key key, Request r) {
     t.checked(key.name, [&] { goal_of(r.noise); });
 }
 
+/// Reads the lens. If it replaces that of the shot file, marks the f-number and film size of the file as those of the
+/// former lens.
 void to_lens(Table t, Key, Request r) {
     if (const std::string name = lens_of(t); !name.empty()) r.lens = name;
     if (!t.is_changed("lens")) return;
@@ -122,6 +124,7 @@ void to_environment(Table t, Key key, Request r) {
     r.environment_cd_m2 = {radiance, radiance, radiance};
 }
 
+/// Reads the number of samples or "auto", for which the noise goal applies.
 void to_spp(Table t, Key key, Request r) {
     const std::optional<double> spp = t.number_or_auto(key.name, key.wanted);
     r.sampling = spp ? Sampling::counted : Sampling::by_noise;

@@ -34,9 +34,9 @@ void set_stop(const Prescription& p, const std::vector<SurfaceRow>& surface_rows
     };
     // A marginal ray from the axial object point, of arbitrary size.
     const ParaxialRay start = std::isinf(object) ? ParaxialRay{1, 0} : ParaxialRay{object, 1};
-    const double at_stop = std::fabs(trace(start, stop + 1).height);
-    const double pupil =
-        std::fabs(trace({1, 0}, stop + 1).height);  // ray height at the stop over that in the entrance pupil
+    const double marginal_height_at_stop = std::fabs(trace(start, stop + 1).height);
+    // Ray height at the stop over that in the entrance pupil.
+    const double stop_per_pupil_height = std::fabs(trace({1, 0}, stop + 1).height);
     const double image_index = lens.indices(lens.wavelength_nm).back();
     const auto marginal_slope = [&](double numerical) {
         if (!(numerical > 0 && numerical < 1)) fail(p, "the numerical aperture must lie between 0 and 1");
@@ -45,20 +45,21 @@ void set_stop(const Prescription& p, const std::vector<SurfaceRow>& surface_rows
     double radius = 0;
     switch (p.aperture_kind) {
         case ApertureKind::stop_size: radius = aperture > 0 ? aperture : surface.clear_semi_diameter; break;
-        case ApertureKind::entrance_pupil_diameter: radius = 0.5 * aperture * pupil; break;
+        case ApertureKind::entrance_pupil_diameter: radius = 0.5 * aperture * stop_per_pupil_height; break;
         case ApertureKind::f_number:
-            radius = 0.5 / (aperture * image_index * std::fabs(trace({1, 0}, count).slope)) * pupil;
+            radius = 0.5 / (aperture * image_index * std::fabs(trace({1, 0}, count).slope)) * stop_per_pupil_height;
             break;
         case ApertureKind::working_f_number:
-            radius = 0.5 / (aperture * image_index * std::fabs(trace(start, count).slope)) * at_stop;
+            radius = 0.5 / (aperture * image_index * std::fabs(trace(start, count).slope)) * marginal_height_at_stop;
             break;
         case ApertureKind::image_aperture:
-            radius = marginal_slope(aperture / image_index) / std::fabs(trace(start, count).slope) * at_stop;
+            radius =
+                marginal_slope(aperture / image_index) / std::fabs(trace(start, count).slope) * marginal_height_at_stop;
             break;
         case ApertureKind::object_aperture:
             if (std::isinf(object))
                 fail(p, "a numerical aperture in object space needs an object at a finite distance");
-            radius = marginal_slope(aperture) * at_stop;
+            radius = marginal_slope(aperture) * marginal_height_at_stop;
             break;
     }
     if (!(radius > 0) || !std::isfinite(radius))
@@ -111,7 +112,7 @@ LensConfiguration lens_configuration(const Prescription& p, const std::vector<Su
     last = 0;
     if (std::isfinite(object) && object <= 0)
         fail(p, "the object lies " + std::to_string(-object) +
-                    " mm image_index the first surface; expected an object in front");
+                    " mm behind the first surface; expected an object in front");
     set_stop(p, surface_rows, lens, object, position);
     if (p.paraxial_image && lens.film_distance == p.defocus)
         lens.film_distance = p.defocus + paraxial_image_distance(lens, lens.wavelength_nm, object);

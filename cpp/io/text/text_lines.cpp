@@ -6,7 +6,7 @@
 namespace realcam::io {
 namespace {
 
-constexpr std::size_t kChunk = 1 << 20;
+constexpr std::size_t kChunk = 1 << 20;  // bytes read at a time
 /// Allows a polygon of tens of millions of corners, but not a file without lines.
 constexpr std::size_t kMaxLineLength = std::size_t{1} << 28;
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";

@@ -18,8 +18,8 @@ namespace {
 /// limits them; it limits brackets itself, but not the parts of a key ("a.b.c" is three tables).
 constexpr std::size_t kMaxLevels = 100;
 
-/// Counts the nesting of brackets and key parts in a text. Invalid TOML is left to the parser: it stops at the first
-/// error, up to which this count is right.
+/// Counts the nesting of brackets and key parts in a text. Invalid TOML is left to the parser, which stops at the first
+/// error; the count is correct up to it.
 class Nesting {
 public:
     explicit Nesting(std::string_view text) : text_(text) {}
@@ -88,8 +88,8 @@ private:
 
     std::string_view text_;
     std::size_t position_ = 0;
-    std::size_t key_levels_ = 0;        ///< dots in the key before the current value
-    std::size_t dots_ = 0;              ///< dots since the last separator
+    std::size_t key_levels_ = 0;  ///< dots in the key before the current value
+    std::size_t dots_ = 0;  ///< dots since the last separator
     std::size_t enclosing_levels_ = 0;  ///< levels of all open brackets and their keys
     std::vector<std::size_t> brackets_;  ///< levels that each open bracket has added
     int line_ = 1;

@@ -73,7 +73,7 @@ public:
         convert_fields();
         convert_wavelengths();
         convert_zoom();
-        remark_unknown_keywords("lines of keywords");
+        remark_unknown_keywords("keywords");
         return std::move(p_);
     }
 

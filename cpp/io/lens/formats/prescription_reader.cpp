@@ -64,8 +64,8 @@ void PrescriptionText::add_unknown_keyword(std::string_view word) {
     if (unknown_.size() < kMaxUnknownWords) unknown_.insert(printable(word.substr(0, 40)));
 }
 
-void PrescriptionText::remark_unknown_keywords(const std::string& text) {
-    if (!unknown_.empty()) remark(text + " that are not known are ignored: " + short_list(unknown_));
+void PrescriptionText::remark_unknown_keywords(const std::string& subject) {
+    if (!unknown_.empty()) remark("unknown " + subject + " are ignored: " + short_list(unknown_));
 }
 
 std::vector<double> PrescriptionText::field_values(const LensCommand& command) const {
@@ -91,9 +91,9 @@ void add_term(PrescriptionSurface& row, int power, double value, double unit) {
 }
 
 std::pair<int, int> xy_powers(int number) {
-    int index = number, degree = 0;
-    while (index > degree) index -= ++degree;
-    return {degree - index, index};
+    int power_of_y = number, degree = 0;
+    while (power_of_y > degree) power_of_y -= ++degree;
+    return {degree - power_of_y, power_of_y};
 }
 
 void set_zernike(PrescriptionSurface& row, ZernikeOrder order, double radius, std::vector<double> coefficients) {
