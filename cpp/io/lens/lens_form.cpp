@@ -36,6 +36,7 @@ std::vector<double> read_radial(const TomlTable& surface) {
     return values;
 }
 
+/// Reads the array "xy_terms"; empty if the key is absent.
 std::vector<XyTerm> read_xy(const TomlTable& surface) {
     std::vector<XyTerm> terms;
     const toml::node* node = surface.find("xy_terms");
@@ -47,6 +48,7 @@ std::vector<XyTerm> read_xy(const TomlTable& surface) {
         if (!triple || triple->size() != 3 || !(*triple)[0].is_integer() || !(*triple)[1].is_integer())
             surface.fail(expected + ", the powers whole numbers", &item);
         const auto power = [&](std::size_t i) {
+            // Limited to fit an int; check_surfaces rejects powers that are out of range.
             return static_cast<int>(std::clamp<std::int64_t>(*(*triple)[i].value<std::int64_t>(), -1, 1000));
         };
         const XyTerm term{power(0), power(1), surface.as_number((*triple)[2], "a coefficient of \"xy_terms\"")};
@@ -86,10 +88,12 @@ void read_terms(const TomlTable& surface, std::optional<Terms>& terms) {
     if (terms->coefficients.empty()) table->fail(std::string{'"'} + words.coefficients_key + "\" is missing");
 }
 
+/// Returns two numbers as a vector; (0, 0) for an absent key.
 Vec2d pair_of(const std::vector<double>& values) {
     return values.empty() ? Vec2d{0, 0} : Vec2d{values[0], values[1]};
 }
 
+/// Reads the key "polygon_mm", which must exist.
 std::vector<Vec2d> read_corners(const TomlTable& table) {
     std::vector<Vec2d> corners;
     const toml::node* node = table.find("polygon_mm");

@@ -23,7 +23,7 @@ public:
 
     Prescription read() {
         const Json& surfaces = root_["surface_group"]["surfaces"];
-        check_count(surfaces.size(), "is no lens of Optiland: surface_group.surfaces");
+        check_count(surfaces.size(), "surface_group.surfaces of Optiland");
         p_.title = root_["name"].text();
         read_object(surfaces[std::size_t{0}], number(z_of(surfaces[1]), "z of the first surface"));
         for (std::size_t i = 1; i + 1 < surfaces.size(); ++i) read_surface(surfaces[i], surfaces[i + 1]);
@@ -42,8 +42,10 @@ public:
     }
 
 private:
+    /// Position of a surface along the z axis, mm.
     static const Json& z_of(const Json& surface) { return surface["geometry"]["cs"]["z"]; }
 
+    // Return curvatures in 1/mm; 0 for an infinite or missing radius. `name`: noun phrase for messages.
     double curvature_of_radius(const Json& radius, const char* name) const {
         return is_infinite(radius) ? 0 : curvature_of(number(radius, name));
     }
@@ -99,7 +101,8 @@ private:
         plane.has_aperture = true;
         plane.thickness = 0.5 * std::fabs(last.thickness);
         last.thickness *= 0.5;
-        plane.clear_semi_diameter = 100 * (100 + plane.thickness);
+        constexpr double kUnlimited = 100;  // times the distance to the film, and 100 mm
+        plane.clear_semi_diameter = kUnlimited * (100 + plane.thickness);
         plane.material = last.material;
         plane.before = inverse_motion(frames_[frames_.size() - 2] * along_axis(last.thickness)) * frames_.back() *
                        along_axis(-plane.thickness);

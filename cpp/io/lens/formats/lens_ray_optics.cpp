@@ -34,6 +34,7 @@ const Json& list_of(const Json& array) {
     return array["__ndarray__"].is_null() ? array : array["__ndarray__"];
 }
 
+/// Converts the file's objects one after the other.
 class RayOpticsReader : PrescriptionJson {
 public:
     using PrescriptionJson::PrescriptionJson;
@@ -43,7 +44,7 @@ public:
         const Json& sequence = attributes(model["seq_model"]);
         const Json &interfaces = sequence["ifcs"], &gaps = sequence["gaps"];
         check_count(gaps.size() + 1 < interfaces.size() ? 0 : interfaces.size(),
-                    "is no lens of ray-optics: optical_model.seq_model");
+                    "optical_model.seq_model of ray-optics");
         const Json& system = attributes(model["system_spec"]);
         p_.title = system["title"].text();
         set_unit(member(system, "dimensions").text());
@@ -65,6 +66,7 @@ public:
     }
 
 private:
+    /// Sets the unit of lengths; empty: mm.
     void set_unit(const std::string& unit) {
         const std::optional<double> known = millimetres_of(unit.empty() ? "MM" : upper_case(unit));
         if (!known) fail("the unit is " + in_quotes(upper_case(unit)) + "; expected mm, cm, meters or inches");
