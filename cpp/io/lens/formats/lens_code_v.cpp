@@ -112,7 +112,7 @@ private:
             {"REF",
              [](R& r, C& c) {
                  if (c.size() == 0) r.lines_.fail("REF needs the number of the reference wavelength");
-                 r.reference_wavelength_ = c.whole(0, "the number of the reference wavelength", 1, 1000);
+                 r.reference_wavelength_ = c.whole(0, "the number of the reference wavelength", 1, kMaxWavelengths);
              }},
             {"XAN YAN XOB YOB XIM YIM XRI YRI", [](R& r, C& c) { r.read_fields(c); }},
             {"VUX VLX VUY VLY", [](R& r, C& c) { r.vignetting_[c.word] = r.values(c, 0, c.word); }},
@@ -227,7 +227,7 @@ private:
         C c(lines_, command.substr(0, 3), {words.begin() + 1, words.end()});
         if (command == "S" || command == "SO" || command == "SI" || command == "S0") return add_surface(command, c);
         if (command[0] == 'S' && is_digits(number)) {
-            select(lines_.whole_number_of(number, "the number of the surface", 0, 1 << 20));
+            select(lines_.whole_number_of(number, "the number of the surface", 0, kMaxSurfaceNumber));
             return read_row(c);
         }
         if (command.size() > 1 && command[0] == 'S' && number.find_first_not_of("0123456789.AIO") == number.npos)
@@ -324,8 +324,9 @@ private:
                 qualifier == "SO" ? "0" : qualifier.substr(std::min<std::size_t>(1, qualifier.size()));
             if (!qualifier.starts_with('S') || !(qualifier == "SI" || is_digits(number)))
                 lines_.fail("ZOO THI needs a surface, as in ZOO THI S5");
-            const int surface =
-                qualifier == "SI" ? -1 : lines_.whole_number_of(number, "the number of the surface", 0, 1 << 20);
+            const int surface = qualifier == "SI"
+                                    ? -1
+                                    : lines_.whole_number_of(number, "the number of the surface", 0, kMaxSurfaceNumber);
             zoom_thicknesses_[surface] = {zoom_values(c, 2, "ZOO THI " + qualifier), lines_.number()};
         } else if (word == "EPD" || word == "FNO" || word == "NA" || word == "NAO") {
             zoom_apertures_ = zoom_values(c, 1, "ZOO " + word);
@@ -397,9 +398,10 @@ private:
         if (qualifier.find("..") != qualifier.npos || qualifier == "A")
             lines_.fail("a range of surfaces (" + in_quotes(word) + "); expected one surface");
         if (qualifier != "O" && qualifier != "I" && !is_digits(qualifier)) return surfaces_[current_];
-        select(qualifier == "O"   ? 0
-               : qualifier == "I" ? static_cast<int>(surfaces_.size()) - 1
-                                  : lines_.whole_number_of(qualifier, "the number of the surface", 0, 1 << 20));
+        select(qualifier == "O" ? 0
+               : qualifier == "I"
+                   ? static_cast<int>(surfaces_.size()) - 1
+                   : lines_.whole_number_of(qualifier, "the number of the surface", 0, kMaxSurfaceNumber));
         c.remove_first();
         return surfaces_[current_];
     }

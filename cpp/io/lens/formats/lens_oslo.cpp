@@ -192,7 +192,7 @@ private:
     OsloSurface& surface() { return surfaces_[current_]; }
     PrescriptionSurface& row() { return surfaces_[current_].row; }
 
-    /// Reads the commands of a line, separated by ';'; "//" begins a remark.
+    /// Reads the commands of a line, separated by ';'; "//" begins a comment.
     void read_line(std::string_view line) {
         std::size_t begin = 0;
         bool quoted = false;
@@ -208,6 +208,7 @@ private:
         read_command(line.substr(begin));
     }
 
+    /// Reads a command from its text.
     void read_command(std::string_view text) {
         text = without_blanks(text);
         const std::string word = upper_case(text.substr(0, std::min<std::size_t>(text.find_first_of(" \t,"), 20)));
@@ -221,7 +222,7 @@ private:
         words.erase(words.begin());
         C c(lines_, word, std::move(words));
         if (word == "LEN") return begin_lens(c);
-        if (surfaces_.empty()) return;  // skips the beginning of files of another kind
+        if (surfaces_.empty()) return;  // ignores text before LEN NEW
         if (word.starts_with("WV")) return read_wavelengths(c);
         if (word.size() < 6 && is_keyword_with_number(word, "AS")) {
             surface().aspheric[std::stoi(word.substr(2))] = c.number(0, "the coefficient " + word);
@@ -231,8 +232,8 @@ private:
         }
     }
 
-    /// Reads a command after END, where some programs write the wavelengths. Later commands are about other things,
-    /// with their own keywords.
+    /// Reads a command after END: directly after it some programs write the wavelengths. Other commands do not concern
+    /// the lens.
     void read_late_command(const std::string& word, std::string_view text) {
         if (word == "CFG") remark("its further configurations (CFG) are left out");
         reads_late_wavelengths_ = reads_late_wavelengths_ && word.starts_with("WV");
@@ -247,7 +248,7 @@ private:
         if (!surfaces_.empty()) lines_.fail("a second lens (LEN); expected only one");
         if (c.upper(0) != "NEW") lines_.fail("expected LEN NEW, which begins a lens");
         if (c.size() > 1) p_.title = std::string(c[1].text);
-        if (c.size() > 3) stated_image_ = c.whole(3, "the number of surfaces", 2, 1 << 20);
+        if (c.size() > 3) stated_image_ = c.whole(3, "the number of surfaces", 2, kMaxSurfaceNumber);
         surfaces_.emplace_back().row.line = lines_.number();
     }
 
@@ -264,7 +265,7 @@ private:
     /// Reads END, and checks the number of surfaces.
     void end_lens(const C& c) {
         const int last = static_cast<int>(surfaces_.size()) - 1;
-        const int stated_number = c.size() > 0 ? c.whole(0, "the number of the image", 0, 1 << 20) : last;
+        const int stated_number = c.size() > 0 ? c.whole(0, "the number of the image", 0, kMaxSurfaceNumber) : last;
         lines_.set_surface(0);
         for (const int number : {stated_number, stated_image_ < 0 ? last : stated_image_})
             if (number != last)
@@ -278,7 +279,7 @@ private:
     void read_wavelengths(const C& c) {
         if (c.word.size() > 2) {
             const std::string_view number = std::string_view(c.word).substr(2);
-            const int i = lines_.whole_number_of(number, "the number of the wavelength", 1, 1000);
+            const int i = lines_.whole_number_of(number, "the number of the wavelength", 1, kMaxWavelengths);
             wavelengths_[i] = c.number(0, "the wavelength");
             return;
         }
@@ -321,7 +322,7 @@ private:
         }
         const double radius = c.number(i, "the radius of the aperture");
         if (radius < 0) lines_.fail("the radius of the aperture must be positive");
-        // An object at infinity has a radius as large as its distance.
+        // OSLO gives an object at infinity a radius as large as its distance.
         row().clear_semi_diameter = unit_ * radius > kLongest ? 0 : radius;
     }
 

@@ -202,13 +202,14 @@ private:
             {"YFLN YFLD", [](R& r, C& c) { r.fields_y_ = r.field_values(c); }},
             {"VDYN", [](R& r, C& c) { r.pupil_shift_y_ = r.field_values(c); }},
             {"VCYN", [](R& r, C& c) { r.pupil_compression_y_ = r.field_values(c); }},
-            {"WAVM", [](R& r, C& c) { set_numbered(c, r.wavelengths_, "the wavelength", 1, 1000); }},
+            {"WAVM", [](R& r, C& c) { set_numbered(c, r.wavelengths_, "the wavelength", 1, kMaxWavelengths); }},
             {"WAVL",
              [](R& r, C& c) {
                  for (std::size_t i = 0; i < c.size() && i < kMaxFileFields; ++i)
                      r.wavelengths_[static_cast<int>(i) + 1] = c.number(i, "each wavelength");
              }},
-            {"PWAV", [](R& r, C& c) { r.primary_ = c.whole(0, "the number of the primary wavelength", 1, 1000); }},
+            {"PWAV",
+             [](R& r, C& c) { r.primary_ = c.whole(0, "the number of the primary wavelength", 1, kMaxWavelengths); }},
             {"AFOC", [](R& r, C&) { r.remark("its image is afocal, which is left out"); }},
             {"MNUM",
              [](R& r, C& c) {
@@ -342,8 +343,9 @@ private:
         s.glass = std::string(c[0].text);
         s.glass_line = lines_.number();
         s.glass_kind = c.size() > 1 ? c.whole(1, "the kind of the glass", 0, 100) : 0;
-        s.pickup =
-            s.glass_kind == 2 && c.size() > 2 ? c.whole(2, "the surface whose glass is picked up", 0, 1 << 20) : 0;
+        s.pickup = s.glass_kind == 2 && c.size() > 2
+                       ? c.whole(2, "the surface whose glass is picked up", 0, kMaxSurfaceNumber)
+                       : 0;
         s.n_d = c.number_or(3, "the glass's n_d", 0);
         s.v_d = c.number_or(4, "the glass's V_d", 0);
         s.partial = c.number_or(5, "the glass's partial dispersion", 0);
@@ -372,7 +374,8 @@ private:
         const int position = c.whole(1, "the configuration", 1, configuration_count_);
         const double value = is_infinity(c[2].text) ? kInfinity : c.number(2, "the value");
         const bool has_surface = c.word != "APER";
-        std::vector<double>& values = values_by_surface[has_surface ? c.whole(0, "the surface", 0, 1 << 20) : 0];
+        std::vector<double>& values =
+            values_by_surface[has_surface ? c.whole(0, "the surface", 0, kMaxSurfaceNumber) : 0];
         values.resize(static_cast<std::size_t>(configuration_count_), std::nan(""));
         values[static_cast<std::size_t>(position) - 1] = value;
     }

@@ -15,6 +15,9 @@
 
 namespace realcam::io {
 
+/// Greatest surface number that is parsed in a command, and greatest number of a wavelength.
+inline constexpr int kMaxSurfaceNumber = 1 << 20, kMaxWavelengths = 1000;
+
 /// Base of the readers of other programs' lens files: the prescription, and the rules that all formats share.
 class PrescriptionReader {
 protected:
