@@ -59,6 +59,7 @@ private:
 /// Encoded pixel: the mantissas of red, green and blue, and their common exponent.
 using Rgbe = std::array<std::uint8_t, 4>;
 
+/// Opened Radiance picture, whose header has been read.
 class RadiancePicture final : public OpenPicture {
 public:
     RadiancePicture(const std::string& path, std::span<const std::uint8_t> bytes) : bytes_(path, bytes) {
@@ -130,6 +131,7 @@ private:
                         "; expected 32-bit_rle_rgbe or 32-bit_rle_xyze");
     }
 
+    /// Parses N numbers of the header line `name`.
     template <std::size_t N>
     static std::array<double, N> numbers(const std::string& name, std::string_view text) {
         std::array<double, N> out{};
@@ -184,6 +186,7 @@ private:
         if (!has_x || !has_y) throw Error(std::string(kBroken) + " (its size names one axis twice)");
     }
 
+    /// Reads a scanline, in one of the two codings.
     void read_line(std::vector<Rgbe>& line) {
         constexpr std::size_t kMinLength = 8, kMaxLength = 0x7fff;  // length of scanlines with run lengths per channel
         Rgbe first;
@@ -196,6 +199,7 @@ private:
         for (std::size_t channel = 0; channel < 4; ++channel) read_channel_runs(line, channel);
     }
 
+    /// Reads one channel of a scanline as run lengths: a code above 128 repeats a byte, any other one copies bytes.
     void read_channel_runs(std::vector<Rgbe>& line, std::size_t channel) {
         for (std::size_t i = 0; i < line.size();) {
             const std::uint8_t code = bytes_.next_or_throw();
@@ -229,6 +233,7 @@ private:
         }
     }
 
+    /// Value of a mantissa: (mantissa / 256) 2^(exponent - 128); 0 for exponent 0.
     static float value_of(std::uint8_t mantissa, std::uint8_t exponent) {
         return exponent == 0 ? 0.0f : std::ldexp(static_cast<float>(mantissa), exponent - 136);
     }

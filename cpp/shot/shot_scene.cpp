@@ -38,18 +38,20 @@ private:
     void add_objects() {
         DistinctNames names(scene_);
         std::map<std::pair<std::string, double>, Assembly> files;  // each file is read once
-        for (const ObjectRequest& wanted : request_.objects) {
-            const auto [file, is_new] = files.try_emplace({wanted.file, wanted.scale});
-            if (is_new) file->second = io::read_scene(wanted.file, {wanted.scale, {}, keep_going_}, readers_.texture);
+        for (const ObjectRequest& object_request : request_.objects) {
+            const auto [file, is_new] = files.try_emplace({object_request.file, object_request.scale});
+            if (is_new)
+                file->second =
+                    io::read_scene(object_request.file, {object_request.scale, {}, keep_going_}, readers_.texture);
             Assembly object = file->second;
-            if (!wanted.material.empty()) {
-                const MaterialRequest& material = find(wanted);
+            if (!object_request.material.empty()) {
+                const MaterialRequest& material = find(object_request);
                 used_.insert(&material);
                 replace_parts(object, [&](const Scene& part) {
                     return std::make_shared<const Scene>(with_one_material(part, material));
                 });
             }
-            add(scene_, object, wanted.placement, wanted.name, names);
+            add(scene_, object, object_request.placement, object_request.name, names);
         }
     }
 
@@ -113,15 +115,15 @@ private:
     }
 
     /// Sets a material of a scene, and adds its textures.
-    void replace_material(Scene& scene, std::size_t index, const MaterialRequest& from) {
-        Material material = from.values;
+    void replace_material(Scene& scene, std::size_t index, const MaterialRequest& replacement) {
+        Material material = replacement.values;
         for (std::size_t i = 0; i < kMaterialTextures.size(); ++i) {
-            if (from.textures[i].empty()) continue;
+            if (replacement.textures[i].empty()) continue;
             if (scene.uvs.empty())
-                throw InputError(from.location +
+                throw InputError(replacement.location +
                                  ": the material's object has no texture coordinates, which a texture needs");
             (material.*kMaterialTextures[i]).texture = static_cast<std::int32_t>(scene.textures.size());
-            scene.textures.push_back(texture(from.textures[i], io::use_of(kMaterialTextures[i])));
+            scene.textures.push_back(texture(replacement.textures[i], io::use_of(kMaterialTextures[i])));
         }
         scene.materials[index] = material;
     }

@@ -10,13 +10,15 @@
 namespace realcam::io {
 namespace {
 
-/// Limit on the number of coatings: several for each surface.
+/// Greatest number of coatings in a file: several for each surface.
 constexpr std::size_t kMaxCoatings = 1000;
 
+/// Names of the predefined metals.
 std::vector<std::string> metal_names() {
     return {aluminium().label, silver().label};
 }
 
+/// Reads the key "metal": a name or complex indices.
 CoatingMaterial read_metal(const TomlTable& table) {
     const toml::node* node = table.find("metal");
     if (!node->is_string()) return read_complex_index(table, "metal");

@@ -26,7 +26,7 @@ std::string from_utf16(std::string_view bytes, bool big_endian, const std::strin
         unsigned point = unit(i);
         if (point >= 0xd800 && point < 0xe000) {
             const unsigned low = i + 3 < bytes.size() ? unit(i + 2) : 0;
-            if (point >= 0xdc00 || low < 0xdc00 || low >= 0xe000) fail(out, "a character of it is broken");
+            if (point >= 0xdc00 || low < 0xdc00 || low >= 0xe000) fail(out, "has an invalid character");
             point = from_surrogates(point, low);
             i += 2;
         }
@@ -53,7 +53,7 @@ std::string decoded_lens_text(std::string_view bytes, const std::string& file) {
     else if (bytes.starts_with("\xfe\xff"sv))
         text = from_utf16(bytes.substr(2), true, file);
     else if (bytes.size() > 3 && bytes[0] != 0 && bytes[1] == 0 && bytes[2] != 0 && bytes[3] == 0)
-        text = from_utf16(bytes, false, file);  // some programs omit the mark
+        text = from_utf16(bytes, false, file);  // some programs omit the byte-order mark
     else if (bytes.size() > 3 && bytes[0] == 0 && bytes[1] != 0 && bytes[2] == 0 && bytes[3] != 0)
         text = from_utf16(bytes, true, file);
     else if (bytes.starts_with("\xef\xbb\xbf"sv))

@@ -152,26 +152,26 @@ private:
             line(shape.is_plain() ? "CIR" : "CIR L'RIM'", s.clear_semi_diameter);
         if (s.inner_semi_diameter > 0) line("CIR OBS", s.inner_semi_diameter);
         const auto add = [&](ApertureOutline kind, const std::string& obscures, const std::string& label,
-                             const Obscuration& piece) {
+                             const Obscuration& obscuration) {
             const std::string word = kind == ApertureOutline::rectangle ? "RE" : "EL";
             if (kind == ApertureOutline::circle) {
-                line("CIR" + label, piece.half.x);
+                line("CIR" + label, obscuration.half.x);
             } else {
-                line(word + 'X' + obscures + label, piece.half.x);
-                line(word + 'Y' + obscures + label, piece.half.y);
+                line(word + 'X' + obscures + label, obscuration.half.x);
+                line(word + 'Y' + obscures + label, obscuration.half.y);
             }
-            if (piece.offset.x != 0) line("ADX" + label, piece.offset.x);
-            if (piece.offset.y != 0) line("ADY" + label, piece.offset.y);
-            if (piece.angle_deg != 0) line("ARO" + label, piece.angle_deg);
+            if (obscuration.offset.x != 0) line("ADX" + label, obscuration.offset.x);
+            if (obscuration.offset.y != 0) line("ADY" + label, obscuration.offset.y);
+            if (obscuration.angle_deg != 0) line("ARO" + label, obscuration.angle_deg);
         };
         if (shape.kind == ApertureOutline::polygon)
             warn(i, "has a polygonal aperture, which a .seq file cannot express");
         else if (shape.half.x > 0)
             add(shape.kind, "", " L'OPEN'", {false, shape.half, shape.offset, 0});
         int number = 0;
-        for (const Obscuration& piece : shape.obscurations)
-            add(piece.is_rectangle ? ApertureOutline::rectangle : ApertureOutline::ellipse, " OBS",
-                " L'OBS" + std::to_string(++number) + '\'', piece);
+        for (const Obscuration& obscuration : shape.obscurations)
+            add(obscuration.is_rectangle ? ApertureOutline::rectangle : ApertureOutline::ellipse, " OBS",
+                " L'OBS" + std::to_string(++number) + '\'', obscuration);
     }
 
     /// Returns the name of a glass in the file; a glass that is in no catalogue becomes a private glass.

@@ -125,8 +125,9 @@ private:
         row.thickness = number(z_of(next), "z of the surface") - number(z_of(surface), "z of the surface");
         // The thickness stated in the file is preferred, because the difference of two positions has lost digits.
         if (surface["thickness"].is_number()) {
-            const double stated = number(surface["thickness"], "the thickness");
-            if (std::fabs(stated - row.thickness) <= 1e-9 * (1 + std::fabs(stated))) row.thickness = stated;
+            const double file_thickness = number(surface["thickness"], "the thickness");
+            if (std::fabs(file_thickness - row.thickness) <= 1e-9 * (1 + std::fabs(file_thickness)))
+                row.thickness = file_thickness;
         }
         read_geometry(surface["geometry"], row);
         const Json& interaction = surface["interaction_model"];
@@ -345,19 +346,19 @@ private:
     /// Returns the rectangle with these corners; std::nullopt if they are not those of a rectangle.
     static std::optional<Obscuration> rectangle_of(const std::vector<Vec2d>& corners) {
         if (corners.size() != 4) return std::nullopt;
-        const auto between = [&](std::size_t a, std::size_t b) {
+        const auto edge = [&](std::size_t a, std::size_t b) {
             return Vec2d{corners[b].x - corners[a].x, corners[b].y - corners[a].y};
         };
-        const Vec2d one = between(1, 0), other = between(3, 0), same = between(2, 3);
-        const double length = hypotenuse(one.x, one.y), width = hypotenuse(other.x, other.y);
+        const Vec2d first_edge = edge(1, 0), other = edge(3, 0), opposite_edge = edge(2, 3);
+        const double length = hypotenuse(first_edge.x, first_edge.y), width = hypotenuse(other.x, other.y);
         const double rounding = 1e-9 * (length + width);
-        if (!(std::fabs(one.x * other.x + one.y * other.y) <= rounding * (length + width)) ||
-            !(std::fabs(one.x - same.x) + std::fabs(one.y - same.y) <= rounding))
+        if (!(std::fabs(first_edge.x * other.x + first_edge.y * other.y) <= rounding * (length + width)) ||
+            !(std::fabs(first_edge.x - opposite_edge.x) + std::fabs(first_edge.y - opposite_edge.y) <= rounding))
             return std::nullopt;
         return Obscuration{true,
                            {0.5 * length, 0.5 * width},
                            {0.5 * (corners[0].x + corners[2].x), 0.5 * (corners[0].y + corners[2].y)},
-                           std::atan2(one.y, one.x) * 180 / std::numbers::pi};
+                           std::atan2(first_edge.y, first_edge.x) * 180 / std::numbers::pi};
     }
 
     /// Sets the aperture of the lens.

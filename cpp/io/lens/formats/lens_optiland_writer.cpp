@@ -40,6 +40,7 @@ public:
     }
 
 private:
+    /// Writes object, surfaces and image.
     void write_surfaces() {
         json_.begin_object("surface_group").begin_array("surfaces");
         json_.begin_object().text("type", "ObjectSurface");
@@ -66,6 +67,7 @@ private:
         json_.end().end();
     }
 
+    /// Ends a surface with its interaction model.
     void write_interaction(bool is_mirror) {
         json_.text("comment", "").begin_object("interaction_model");
         json_.text("type", "RefractiveReflectiveModel").truth("is_reflective", is_mirror);
@@ -89,6 +91,7 @@ private:
         write_radius("radius", s.bends_light() ? s.curvature : 0);
         json_.number("conic", s.bends_light() ? s.conic : 0.0);
     }
+    /// Writes a radius of curvature in mm; infinity for a plane.
     void write_radius(const char* key, double curvature) {
         json_.key(key).number_or_infinity(curvature == 0 ? kInfinity : 1 / curvature);
     }
@@ -206,15 +209,15 @@ private:
             json_.end();
         }
         for (std::size_t k = shape.obscurations.size(); k-- > 0;) {
-            const Obscuration& piece = shape.obscurations[k];
-            const bool is_rotated = piece.angle_deg != 0;
-            if (is_rotated && !piece.is_rectangle && piece.half.x != piece.half.y)
+            const Obscuration& obscuration = shape.obscurations[k];
+            const bool is_rotated = obscuration.angle_deg != 0;
+            if (is_rotated && !obscuration.is_rectangle && obscuration.half.x != obscuration.half.y)
                 warn(i, "has a rotated elliptic obscuration, which is written without its rotation");
             json_.key("b");
-            if (is_rotated && piece.is_rectangle)
-                write_polygon(rotated_rectangle(piece.half, piece.angle_deg), piece.offset);
+            if (is_rotated && obscuration.is_rectangle)
+                write_polygon(rotated_rectangle(obscuration.half, obscuration.angle_deg), obscuration.offset);
             else
-                write_shape(piece);
+                write_shape(obscuration);
             json_.end();
         }
     }
@@ -222,8 +225,8 @@ private:
     JsonWriter& begin_aperture(const char* type) { return json_.begin_object().text("type", type); }
 
     /// Writes an ellipse or rectangle; its rotation is ignored.
-    void write_shape(const Obscuration& piece) {
-        const auto& [is_rectangle, half, offset, angle_deg] = piece;
+    void write_shape(const Obscuration& obscuration) {
+        const auto& [is_rectangle, half, offset, angle_deg] = obscuration;
         begin_aperture(is_rectangle ? "RectangularAperture" : "EllipticalAperture");
         if (is_rectangle)
             json_.numbers({{"x_min", offset.x - half.x}, {"x_max", offset.x + half.x}})

@@ -133,13 +133,14 @@ private:
             warn(i, "has a polygonal aperture, which a ray-optics file cannot express");
         else if (shape.half.x > 0)
             write_aperture(shape.kind, shape.half, shape.offset, false);
-        for (const Obscuration& piece : shape.obscurations) {
-            const bool is_rotated = piece.angle_deg != 0 && (piece.is_rectangle || piece.half.x != piece.half.y);
+        for (const Obscuration& obscuration : shape.obscurations) {
+            const bool is_rotated =
+                obscuration.angle_deg != 0 && (obscuration.is_rectangle || obscuration.half.x != obscuration.half.y);
             if (is_rotated)
                 warn(i, "has a rotated obscuration, which a ray-optics file cannot express");
             else
-                write_aperture(piece.is_rectangle ? ApertureOutline::rectangle : ApertureOutline::ellipse, piece.half,
-                               piece.offset, true);
+                write_aperture(obscuration.is_rectangle ? ApertureOutline::rectangle : ApertureOutline::ellipse,
+                               obscuration.half, obscuration.offset, true);
         }
     }
 

@@ -190,21 +190,21 @@ private:
         const Surface& s = lens_.surfaces[i];
         const ApertureShape& shape = s.aperture_shape;
         Vec2d offset = shape.offset;
-        const bool is_circle = shape.kind == ApertureOutline::circle, is_open = is_circle && shape.half.x == 0;
+        const bool is_circle = shape.kind == ApertureOutline::circle, has_no_outline = is_circle && shape.half.x == 0;
         bool has_keyword = true;
         // In Zemax a surface has one aperture or one obscuration.
         const bool is_single_obscuration =
-            is_open && shape.obscurations.size() == 1 && shape.obscurations.front().angle_deg == 0;
+            has_no_outline && shape.obscurations.size() == 1 && shape.obscurations.front().angle_deg == 0;
         if (shape.kind == ApertureOutline::rectangle) {
             line("SQAP", {shape.half.x, shape.half.y});
         } else if (shape.kind == ApertureOutline::ellipse) {
             line("ELAP", {shape.half.x, shape.half.y});
-        } else if (is_circle && !is_open) {
+        } else if (is_circle && !has_no_outline) {
             line("CLAP", {s.inner_semi_diameter, shape.half.x});
         } else if (is_single_obscuration) {
-            const Obscuration& piece = shape.obscurations.front();
-            line(piece.is_rectangle ? "SQOB" : "ELOB", {piece.half.x, piece.half.y});
-            offset = piece.offset;
+            const Obscuration& obscuration = shape.obscurations.front();
+            line(obscuration.is_rectangle ? "SQOB" : "ELOB", {obscuration.half.x, obscuration.half.y});
+            offset = obscuration.offset;
         } else {
             has_keyword = false;
         }
@@ -212,11 +212,12 @@ private:
             warn(i, "has a polygonal aperture, which realcam does not write to .zmx files");
         if (!is_single_obscuration && !shape.obscurations.empty())
             warn(i, "has obscurations, which a surface with Zemax's single aperture cannot express");
-        if (s.inner_semi_diameter > 0 && has_keyword && (is_open || !is_circle))
-            warn(i, "has a disc in its aperture, which Zemax's one aperture of a surface does not say");
+        if (s.inner_semi_diameter > 0 && has_keyword && (has_no_outline || !is_circle))
+            warn(i, "has a central obscuration, which a surface with Zemax's single aperture cannot express");
         if (offset != Vec2d{0, 0}) line("OBDC", {offset.x, offset.y});
     }
 
+    /// Returns the values of GLAS: a catalogue glass, or else a model glass with n_d and V_d.
     std::string glass(const Glass& glass) {
         const auto known = catalogue_name_of(glass);
         const AbbePair pair = abbe_pair(glass);
@@ -226,9 +227,9 @@ private:
         }
         if (reported_.insert(glass.label).second) {
             if (known)
-                result_.warnings.push_back("that the glass " + in_quotes(glass.label) +
-                                           " is that maker's, as another maker in the file has the name too: it is "
-                                           "written by n_d and V_d");
+                result_.warnings.push_back("the maker of the glass " + in_quotes(glass.label) +
+                                           ", because another maker in the file uses the same name: it is written by "
+                                           "n_d and V_d");
             const Glass model = glass_of_pair(pair.n_d, pair.v_d);
             if (!known && std::fabs(model.index(lens_.wavelength_nm) - glass.index(lens_.wavelength_nm)) > 1e-9)
                 result_.warnings.push_back("the glass " + in_quotes(glass.label) +
@@ -237,8 +238,8 @@ private:
         return numbers("___BLANK", {1, 0, pair.n_d, pair.v_d}) + " 0 0 0 0 0 0";
     }
 
-    /// True if no other maker in the file has another glass of this name. A file lists the makers of all of its glasses
-    /// together.
+    /// True if no other maker of the file's glasses has a glass of this name: a file lists the makers of all its
+    /// glasses together, not with each glass.
     bool is_unique(const CatalogueName& known) const {
         std::set<std::string> makers;
         for (const Surface& s : lens_.surfaces)
@@ -248,6 +249,7 @@ private:
         });
     }
 
+    /// Writes the zoom positions as configurations.
     void write_zoom() {
         const ZoomRange& zoom = lens_.zoom;
         if (zoom.positions.empty()) return;
