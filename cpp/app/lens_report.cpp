@@ -61,6 +61,7 @@ std::string coating_name(const Coating& coating) {
     return std::to_string(coating.layers.size()) + " layers";
 }
 
+/// "(1, 2, 3)"
 std::string vector_text(Vec3d v) {
     return '(' + number_text(v.x, 6) + ", " + number_text(v.y, 6) + ", " + number_text(v.z, 6) + ')';
 }
@@ -124,7 +125,7 @@ std::string table(const LensSystem& lens) {
         std::string line;
         for (std::size_t c = 0; c < row.size(); ++c) {
             const std::string gap(widths[c] - row[c].size(), ' ');
-            const bool left_aligned = c == 1 || c == 4 || c == 6;
+            const bool left_aligned = c == 1 || c == 4 || c == 6;  // type, material, remarks
             line += "  " + (left_aligned ? row[c] + gap : gap + row[c]);
         }
         text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
@@ -190,6 +191,7 @@ std::optional<double> t_stop_if_known(const LensSystem& lens, std::string& reaso
     }
 }
 
+/// T-stop, or the reason why it is unknown.
 std::string t_stop_text(const LensSystem& lens) {
     std::string reason;
     const std::optional<double> value = t_stop_if_known(lens, reason);
@@ -209,6 +211,7 @@ std::vector<std::string> zoom_lines(const LensSystem& lens) {
     return lines;
 }
 
+/// Shape of the diaphragm's opening.
 std::string iris_text(const IrisShape& iris) {
     if (iris.blades == 0) return "round";
     return std::to_string(iris.blades) + " blades, rounding " + number_text(iris.rounding) + ", rotation " +

@@ -44,7 +44,7 @@ private:
     }
 
     const Environment& file_;
-    int size_;
+    int size_;  // pixels along an edge of a face
 };
 
 /// Resamples a cube map to a latitude-longitude picture, with four samples per pixel, and about as many pixels along

@@ -15,6 +15,7 @@
 namespace realcam::image_io {
 namespace {
 
+/// Opened PNG, whose header has been read.
 class PngPicture final : public OpenPicture {
 public:
     PngPicture(const std::string& path, std::span<const std::uint8_t> bytes) : bytes_(bytes) {
@@ -50,6 +51,7 @@ public:
     }
 
 private:
+    /// libpng's error handler: stores the message, and jumps to guarded().
     static void jump_on_error(png_structp png, png_const_charp message) {
         auto& self = *static_cast<PngPicture*>(png_get_error_ptr(png));
         std::strncpy(self.error_, message, sizeof self.error_ - 1);
@@ -57,6 +59,7 @@ private:
     }
     static void ignore_warning(png_structp, png_const_charp) {}
 
+    /// libpng's read function: copies the next encoded bytes from the file or from memory.
     static void read_bytes(png_structp png, png_bytep buffer, png_size_t count) {
         auto& self = *static_cast<PngPicture*>(png_get_io_ptr(png));
         if (self.file_.is_open()) {
@@ -116,6 +119,7 @@ private:
             }
     }
 
+    /// Converts the first `count` channels of a decoded row.
     template <class Value, class Convert>
     void convert_row(const std::uint8_t* row, int count, int stride, Value* pixels, Convert&& convert) const {
         const int max_code = bytes_per_value_ == 2 ? 65535 : 255;
@@ -138,9 +142,10 @@ private:
     } handles_;
     png_structp& png_ = handles_.png;
     png_infop& info_ = handles_.info;
-    int passes_ = 1, bytes_per_value_ = 1;
-    std::jmp_buf after_error_;
-    char error_[100] = "";
+    int passes_ = 1;  ///< of an interlaced picture
+    int bytes_per_value_ = 1;
+    std::jmp_buf after_error_;  ///< set by guarded()
+    char error_[100] = "";  ///< libpng's last error message
 };
 
 }  // namespace

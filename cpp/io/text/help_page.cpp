@@ -15,7 +15,7 @@ constexpr std::size_t kIndent = 2, kGap = 2;  // blanks before a row, and betwee
 /// Greatest width of the column of option names. After longer names, the text begins on the next line.
 constexpr std::size_t kMaxNameWidth = 30;
 
-/// Returns the width in columns, where continuation bytes of UTF-8 count 0.
+/// Returns the width of a text in columns, one per character of UTF-8.
 std::size_t width_of(std::string_view text) {
     return static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
@@ -41,6 +41,7 @@ void append_wrapped(std::string& page, const std::string& text, std::size_t colu
     page += '\n';
 }
 
+/// Appends a section, whose descriptions are aligned in a column.
 void append_section(std::string& page, const HelpPage::Section& section) {
     std::size_t max_width = 0;
     for (const auto& [name, text] : section.rows) max_width = std::max(max_width, width_of(name));
@@ -120,7 +121,8 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
             closest.emplace_back(word_distance, candidate);
     }
     std::sort(closest.begin(), closest.end());
-    if (closest.size() > 3) closest.resize(3);
+    constexpr std::size_t kMaxSuggestions = 3;
+    if (closest.size() > kMaxSuggestions) closest.resize(kMaxSuggestions);
     if (closest.empty()) return {};
     std::string text = " (did you mean ";
     for (std::size_t i = 0; i < closest.size(); ++i) {

@@ -58,7 +58,7 @@ private:
 
     Json parse_value(int depth) {
         if (depth > kMaxNesting) fail("less nesting");
-        if (++values_ > kMaxValues) fail("fewer than 8388608 values");
+        if (++values_ > kMaxValues) fail("fewer than " + std::to_string(kMaxValues) + " values");
         checkpoint_.pass();
         if (accept("{")) return parse_object(depth);
         if (accept("[")) return parse_array(depth);
@@ -182,7 +182,8 @@ private:
     std::string_view text_;
     Checkpoint& checkpoint_;
     JsonNumbers numbers_;
-    std::size_t position_ = 0, values_ = 0;
+    std::size_t position_ = 0;  // of the next character
+    std::size_t values_ = 0;  // values parsed so far
 };
 
 const Json kNull;

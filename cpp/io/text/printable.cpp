@@ -7,7 +7,10 @@ namespace realcam::io {
 namespace {
 
 constexpr std::size_t kMaxQuotedBytes = 60;
-constexpr std::string_view kReplacement = "\xef\xbf\xbd";
+constexpr std::string_view kReplacement = "\xef\xbf\xbd";  // U+FFFD in UTF-8
+
+// Limits of one_line, in bytes: longer words and lines are shortened to this number of bytes at each end.
+constexpr std::size_t kMaxWord = 300, kWordEnds = 100, kMaxLine = 2000, kLineEnds = 800;
 
 /// Replaces control characters and invalid bytes (see printable), and truncates at the end of a character after
 /// `max_bytes` bytes.
@@ -41,7 +44,8 @@ std::string in_quotes(std::string_view bytes) {
 
 namespace {
 
-/// Removes the middle of a text that is longer than `max_length`, and keeps `kept` characters at each end.
+/// Replaces the middle of a text that is longer than `max_length` by the number of bytes left out; `kept`: number of
+/// bytes that remain at each end.
 std::string shortened(const std::string& text, std::size_t max_length, std::size_t kept) {
     if (text.size() <= max_length) return text;
     return text.substr(0, kept) + "[... " + std::to_string(text.size() - 2 * kept) + " characters ...]" +
@@ -53,7 +57,7 @@ std::string shortened(const std::string& text, std::size_t max_length, std::size
 std::string one_line(const std::string& message) {
     std::string line, word;
     const auto end_word = [&] {
-        line += shortened(word, 300, 100);
+        line += shortened(word, kMaxWord, kWordEnds);
         word.clear();
     };
     for (const char c : message) {
@@ -66,11 +70,12 @@ std::string one_line(const std::string& message) {
         }
     }
     end_word();
-    return shortened(line, 2000, 800);
+    return shortened(line, kMaxLine, kLineEnds);
 }
 
 namespace {
 
+/// True if the byte lies between two values, inclusive.
 bool is_between(char c, unsigned low, unsigned high) {
     const auto value = static_cast<unsigned char>(c);
     return value >= low && value <= high;

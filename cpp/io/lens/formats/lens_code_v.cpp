@@ -526,8 +526,8 @@ private:
         const std::string formula = c.upper(0, 8);
         if (!formula.empty() && formula[0] >= 'A' && formula[0] <= 'Z') {
             if (formula != "LAU")
-                throw InputError(what + " is given by the formula " + in_quotes(c[0].text) +
-                                 ", which is not known; expected LAU (Laurent) or an index for each wavelength");
+                throw InputError(what + " is specified by the unknown formula " + in_quotes(c[0].text) +
+                                 "; expected LAU (Laurent) or an index for each wavelength");
             // n^2 = A0 + A1 l^2 + A2 / l^2 + A3 / l^4 + ..., l in um.
             const std::vector<double> a = values(c, 1, what);
             return glass_of_formula(

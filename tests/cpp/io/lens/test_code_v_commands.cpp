@@ -49,7 +49,7 @@ TEST_CASE("a private glass that cannot be read is refused where a surface has it
         CHECK(read(with_private_glass(line, "NBK7_SCHOTT"), "a.seq").lens == plain);
     }
     const Reading formula = read(with_private_glass("'X' HAR 1.5 0.1 0.2\n", "'X'"), "a.seq");
-    CHECK(formula.says("a.seq:14: surface 2: the private glass \"X\" is given by the formula \"HAR\""));
+    CHECK(formula.says("a.seq:14: surface 2: the private glass \"X\" is specified by the unknown formula \"HAR\""));
     CHECK(read(with_private_glass("'X' 1.5\n", "'X'"), "a.seq").says("has 1 indices for 3 wavelengths"));
     CHECK(read(with_private_glass("'X' HAR 1\n", "'X'"), "a.seq", with_glass("X=1.6,50")).error == "");
 }
