@@ -169,7 +169,7 @@ def test_help_has_one_form(name: str, python: Said, cpp: Said) -> None:
     def paragraphs(page: str) -> list[str]:
         """One for each option, argument and heading; which column texts begin in depends on the names in a group."""
         lines = re.sub(r"\n {4,}", " ", page).replace(" [required]", "").splitlines()
-        return sorted({" ".join(line.split()) for line in lines} - {"Camera:", "Scene:", "Picture:", "Film:", ""})
+        return sorted({" ".join(line.split()) for line in lines} - {"Camera:", "Scene:", "Picture:", "Video:", ""})
 
     assert paragraphs(text) == paragraphs(printed)
 
