@@ -28,7 +28,7 @@ std::string last_component(const std::string& name) {
 }
 
 /// Layer of an OpenEXR file: the channels of one prefix in one part.
-struct Layer {
+struct FileLayer {
     std::string name;  // part name and prefix; empty: channels without a prefix in a file of one part
     std::size_t part;  // index
     std::vector<std::pair<std::string, int>> channels =
@@ -74,8 +74,8 @@ struct Layer {
 };
 
 /// Returns the flat layers, in the order of the file.
-std::vector<Layer> layers_of(const std::vector<EncodedHeader>& parts) {
-    std::vector<Layer> layers;
+std::vector<FileLayer> layers_of(const std::vector<EncodedHeader>& parts) {
+    std::vector<FileLayer> layers;
     for (std::size_t p = 0; p < parts.size(); ++p) {
         if (parts[p].is_deep || parts[p].depth > 1) continue;
         const std::string part_name = parts.size() > 1 ? parts[p].part_name : "";
@@ -87,8 +87,9 @@ std::vector<Layer> layers_of(const std::vector<EncodedHeader>& parts) {
             std::string name = prefix.empty()                            ? part_name
                                : part_name.empty() || includes_part_name ? prefix
                                                                          : part_name + "." + prefix;
-            auto layer = std::ranges::find_if(layers, [&](const Layer& l) { return l.part == p && l.name == name; });
-            if (layer == layers.end()) layer = layers.insert(layers.end(), Layer{std::move(name), p});
+            auto layer =
+                std::ranges::find_if(layers, [&](const FileLayer& l) { return l.part == p && l.name == name; });
+            if (layer == layers.end()) layer = layers.insert(layers.end(), FileLayer{std::move(name), p});
             layer->channels.emplace_back(lower(last_component(channel)), static_cast<int>(c));
             layer->has_whole_numbers |= parts[p].channel_names[c].is_number;
         }
@@ -97,7 +98,7 @@ std::vector<Layer> layers_of(const std::vector<EncodedHeader>& parts) {
 }
 
 /// Lists the names of layers for a message.
-std::string names_of(const std::vector<const Layer*>& layers) {
+std::string names_of(const std::vector<const FileLayer*>& layers) {
     constexpr std::size_t kMaxListed = 12;
     std::string out;
     for (std::size_t i = 0; i < std::min(kMaxListed, layers.size()); ++i)
@@ -107,31 +108,31 @@ std::string names_of(const std::vector<const Layer*>& layers) {
 
 /// Returns the layers for which the predicate is true.
 template <class Predicate>
-std::vector<const Layer*> filtered(const std::vector<const Layer*>& layers, Predicate predicate) {
-    std::vector<const Layer*> out;
-    std::ranges::copy_if(layers, std::back_inserter(out), [&](const Layer* layer) { return predicate(*layer); });
+std::vector<const FileLayer*> filtered(const std::vector<const FileLayer*>& layers, Predicate predicate) {
+    std::vector<const FileLayer*> out;
+    std::ranges::copy_if(layers, std::back_inserter(out), [&](const FileLayer* layer) { return predicate(*layer); });
     return out;
 }
 
 /// True if the layer has a name with which renderers denote the complete light.
-bool is_beauty(const Layer& layer) {
+bool is_beauty(const FileLayer& layer) {
     return std::ranges::find(kBeautyNames, lower(last_component(layer.name))) != std::end(kBeautyNames);
 }
 
 /// Returns the layer to read among those that are pictures (see choose_layer). Throws Error.
-const Layer& select_layer(const std::vector<const Layer*>& pictures, const std::string& requested) {
+const FileLayer& select_layer(const std::vector<const FileLayer*>& pictures, const std::string& requested) {
     if (!requested.empty()) {
-        const auto named = filtered(pictures, [&](const Layer& l) { return lower(l.name) == lower(requested); });
+        const auto named = filtered(pictures, [&](const FileLayer& l) { return lower(l.name) == lower(requested); });
         if (named.size() == 1) return *named[0];
         throw Error((named.empty() ? "has no layer " : "has several layers ") + io::in_quotes(requested) +
                     "; its layers are " + names_of(pictures));
     }
     // Cryptomatte layers are excluded: they store hashes as red, green and blue.
-    const auto light = filtered(pictures, [](const Layer& l) {
+    const auto light = filtered(pictures, [](const FileLayer& l) {
         return !lower(l.name).starts_with("crypto") && !lower(last_component(l.name)).starts_with("crypto");
     });
-    const auto coloured = filtered(light, [](const Layer& l) { return !l.colours().empty(); });
-    for (const auto& candidates : {filtered(coloured, [](const Layer& l) { return l.name.empty(); }),
+    const auto coloured = filtered(light, [](const FileLayer& l) { return !l.colours().empty(); });
+    for (const auto& candidates : {filtered(coloured, [](const FileLayer& l) { return l.name.empty(); }),
                                    filtered(coloured, is_beauty), coloured, filtered(light, is_beauty), light}) {
         if (candidates.size() == 1) return *candidates[0];
         if (candidates.size() > 1)
@@ -143,13 +144,13 @@ const Layer& select_layer(const std::vector<const Layer*>& pictures, const std::
 }  // namespace
 
 ExrLayer choose_layer(const std::vector<EncodedHeader>& parts, const std::string& name) {
-    const std::vector<Layer> layers = layers_of(parts);
-    std::vector<const Layer*> pictures;
-    for (const Layer& layer : layers)
+    const std::vector<FileLayer> layers = layers_of(parts);
+    std::vector<const FileLayer*> pictures;
+    for (const FileLayer& layer : layers)
         if (!layer.picture().empty()) pictures.push_back(&layer);
     // Id layers have whole numbers and are ignored; if there are no others, the error message names the reason.
-    const auto light = filtered(pictures, [](const Layer& l) { return !l.has_whole_numbers; });
-    const Layer& layer = select_layer(!name.empty() || light.empty() ? pictures : light, name);
+    const auto light = filtered(pictures, [](const FileLayer& l) { return !l.has_whole_numbers; });
+    const FileLayer& layer = select_layer(!name.empty() || light.empty() ? pictures : light, name);
     std::vector<int> channels = layer.picture();
     for (const int channel : channels)
         if (parts[layer.part].channel_names[static_cast<std::size_t>(channel)].is_number)

@@ -127,8 +127,8 @@ LensSystem joined_configurations(const Prescription& p, const std::vector<LensCo
     LensSystem joined = configurations[static_cast<std::size_t>(p.zoom_current)].lens;
     joined.zoom.current = p.zoom_current;
     const auto differs = [&](auto value) {
-        return std::any_of(configurations.begin(), configurations.end(), [&](const LensConfiguration& position) {
-            return value(position.lens) != value(configurations.front().lens);
+        return std::any_of(configurations.begin(), configurations.end(), [&](const LensConfiguration& configuration) {
+            return value(configuration.lens) != value(configurations.front().lens);
         });
     };
     for (int i = 0; i + 1 < static_cast<int>(joined.surfaces.size()); ++i)
@@ -136,14 +136,14 @@ LensSystem joined_configurations(const Prescription& p, const std::vector<LensCo
             joined.zoom.surfaces.push_back(i);
     const bool stop_changes = differs([](const LensSystem& s) { return s.stop_semi_diameter; });
     for (std::size_t k = 0; k < configurations.size(); ++k) {
-        const LensSystem& position = configurations[k].lens;
+        const LensSystem& lens = configurations[k].lens;
         ZoomPosition position{printable(names[k]),
                               {},
-                              position.film_distance,
-                              position.focus_distance,
-                              stop_changes ? position.stop_semi_diameter : 0.0};
+                              lens.film_distance,
+                              lens.focus_distance,
+                              stop_changes ? lens.stop_semi_diameter : 0.0};
         for (const int i : joined.zoom.surfaces)
-            position.thicknesses.push_back(position.surfaces[static_cast<std::size_t>(i)].thickness);
+            position.thicknesses.push_back(lens.surfaces[static_cast<std::size_t>(i)].thickness);
         joined.zoom.positions.push_back(std::move(position));
     }
     return joined;

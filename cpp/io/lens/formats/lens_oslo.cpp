@@ -15,7 +15,7 @@ namespace realcam::io {
 namespace {
 
 /// OSLO treats object distances from this number of the file's units on as infinite.
-constexpr double kInfiniteDistance = 1e8;
+constexpr double kOsloInfinity = 1e8;
 
 /// Medium as specified: a glass name, indices at the file's wavelengths, or n_d and V_d. Air if all are empty.
 struct OsloMedium {
@@ -357,7 +357,7 @@ private:
         for (OsloSurface& s : surfaces_) s.row.material = material_of(s);
         resolve_solves();
         const PrescriptionSurface &object = surfaces_.front().row, &image = surfaces_.back().row;
-        set_object(object.thickness >= kInfiniteDistance ? kInfinity : unit_ * object.thickness, object.curvature,
+        set_object(object.thickness >= kOsloInfinity ? kInfinity : unit_ * object.thickness, object.curvature,
                    object.line);
         p_.image_curvature = image.curvature;
         if (!object.material.is_air()) add_unsupported("an object inside a glass", object.line, 0);
@@ -469,7 +469,7 @@ private:
     /// need it.
     void resolve_solves() {
         const double object = surfaces_.front().row.thickness, radius = beam_radius_.value_or(1);
-        ParaxialRay ray{radius, object >= kInfiniteDistance ? 0 : radius / object};
+        ParaxialRay ray{radius, object >= kOsloInfinity ? 0 : radius / object};
         double index = surfaces_.front().row.material.index(p_.wavelength_nm), sign = 1;
         for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) {
             auto& [row, aspheric, ad_terms, step, medium, pickups, axial_slope, axial_height] = surfaces_[i];

@@ -16,7 +16,7 @@ namespace realcam::io {
 
 PbrtThickness pbrt_thickness_named(const std::string& name) {
     if (name == "after") return PbrtThickness::after;
-    if (name == "before") return PbrtThickness::is_before_surface;
+    if (name == "before") return PbrtThickness::before;
     throw InputError("the thickness in a pbrt lens table must be \"after\" or \"before\" its surface; it is " +
                      in_quotes(name));
 }
@@ -66,7 +66,7 @@ Prescription read_pbrt(std::string_view text, const std::string& file, LensGlass
         p.surfaces.push_back(std::move(row));
     }
     if (p.surfaces.empty()) throw LensFileError("has no rows; expected radius, thickness, index and diameter", file);
-    const bool is_before_surface = thickness == PbrtThickness::is_before_surface ||
+    const bool is_before_surface = thickness == PbrtThickness::before ||
                                    (thickness == PbrtThickness::by_first_row && p.surfaces.front().thickness == 0);
     if (is_before_surface) {
         for (std::size_t i = 0; i + 1 < p.surfaces.size(); ++i) p.surfaces[i].thickness = p.surfaces[i + 1].thickness;

@@ -11,7 +11,7 @@
 namespace realcam::io {
 namespace {
 
-constexpr double kInfiniteDistance = 1e10;  // mm, stands for infinity in ray-optics
+constexpr double kRayOpticsInfinity_mm = 1e10;  // mm, stands for infinity in ray-optics
 
 class RayOpticsWriter : PrescriptionWriter {
 public:
@@ -74,7 +74,7 @@ private:
         }
         write_interface(name_of(count), "Img", "dummy", film_corner(), lens_.film_placement, count);
         json_.end().begin_array("gaps");
-        write_gap(std::isfinite(object_distance()) ? object_distance() : kInfiniteDistance, Glass::air());
+        write_gap(std::isfinite(object_distance()) ? object_distance() : kRayOpticsInfinity_mm, Glass::air());
         for (std::size_t i = 0; i < count; ++i) write_gap(thickness(i), medium_behind(i));
         json_.end().number("stop_surface", lens_.stop_index() + 1);
         json_.number("cur_surface", static_cast<double>(count)).truth("do_apertures", false);
