@@ -44,10 +44,10 @@ void add_lens_options(CLI::App& command, LensFileOptions& values) {
     command.add_flag("--force", values.force,
                      "Read a lens file with unsupported features: leave them out, with warnings");
     command
-        .add_option("--pbrt-thickness", values.pbrt_thickness,
-                    "Whether the thicknesses of a .dat file are those after or before the surface of their row "
-                    "[detected from the "
-                    "first row]")
+        .add_option(
+            "--pbrt-thickness", values.pbrt_thickness,
+            "Whether a thickness in a .dat file is that after or before the surface of its row [detected from the "
+            "first row]")
         ->type_name("WHERE");
 }
 

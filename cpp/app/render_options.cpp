@@ -74,13 +74,12 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     command.add_option("--fps", options.frames_per_second, "Frames per second of the scene's time [24]")
         ->type_name("N")
         ->needs(frames);
-    command.add_flag("--again", options.retakes_frames, "Take frames that exist already again")->needs(frames);
+    command.add_flag("--again", options.retakes_frames, "Retake frames that exist already")->needs(frames);
     command.option_defaults()->group(group);
     command
         .add_option("-o,--output", options.outputs,
                     "Picture to write: .png, .jpg, .tif or .webp, or .exr for the linear exposure; may be repeated. "
-                    "With --frames "
-                    "also .mp4 (realcam[video])")
+                    "With --frames also .mp4 (realcam[video])")
         ->type_name("FILE")
         ->required()
         ->allow_extra_args(false);

@@ -95,8 +95,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 /// True if the text contains the part, ignoring case.
-bool contains(std::string_view text, std::string_view is_part) {
-    return std::search(text.begin(), text.end(), is_part.begin(), is_part.end(),
+bool contains(std::string_view text, std::string_view part) {
+    return std::search(text.begin(), text.end(), part.begin(), part.end(),
                        [](char x, char y) { return lower(x) == lower(y); }) != text.end();
 }
 
