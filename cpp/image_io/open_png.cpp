@@ -142,7 +142,7 @@ private:
     } handles_;
     png_structp& png_ = handles_.png;
     png_infop& info_ = handles_.info;
-    int passes_ = 1;  ///< of an interlaced picture
+    int passes_ = 1;  ///< number of interlacing passes
     int bytes_per_value_ = 1;
     std::jmp_buf after_error_;  ///< set by guarded()
     char error_[100] = "";  ///< libpng's last error message

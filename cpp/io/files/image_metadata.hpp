@@ -33,7 +33,7 @@ struct ImageMetadata {
     std::string effects, illuminant;
     std::string coatings;  ///< coating_summary if an effect needs coatings; otherwise empty
     std::string plan;  ///< summary of the planner's decisions; empty without a plan
-    std::string film;      ///< of a video's frame: digest of the settings, and the frame's number; otherwise empty
+    std::string film;      ///< digest of the settings, and the number of the video frame; empty for a single picture
     std::string denoiser;  ///< name of the denoiser that changed the exposure; empty without one
 
     /// Returns names "realcam:..." and their values, as stored in every format.
