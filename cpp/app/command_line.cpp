@@ -16,17 +16,17 @@
 #include "../io/text/printable.hpp"
 #include "help.hpp"
 #include "lens_command.hpp"
-#include "lens_words.hpp"
+#include "lens_file_options.hpp"
 #include "render_command.hpp"
 
 namespace realcam::app {
 
 namespace {
 
-/// The innermost command on the command line; the program itself if it names no command.
-const CLI::App& typed_command(const CLI::App& app) {
-    const std::vector<CLI::App*> typed = app.get_subcommands();
-    return typed.empty() ? app : typed_command(*typed.back());
+/// The innermost subcommand that the user has typed; the program itself if it names no command.
+const CLI::App& invoked_command(const CLI::App& app) {
+    const std::vector<CLI::App*> invoked = app.get_subcommands();
+    return invoked.empty() ? app : invoked_command(*invoked.back());
 }
 
 /// Long names only: a mistyped one-letter option could be any other one.
@@ -43,58 +43,59 @@ std::vector<std::string> command_names(const CLI::App& command) {
     return names;
 }
 
-std::string with_commas(const std::vector<std::string>& names) {
+std::string joined_with_commas(const std::vector<std::string>& names) {
     std::string text;
     for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
     return text;
 }
 
-/// CLI11's message, reworded where the commands in Python use other words.
-std::string said(const CLI::ParseError& error) {
+/// CLI11's message, rephrased where the commands in Python phrase it differently.
+std::string rephrased(const CLI::ParseError& error) {
     const std::string words = error.what();
-    constexpr std::array<std::pair<const char*, const char*>, 3> kInPlaceOf{{
+    constexpr std::array<std::pair<const char*, const char*>, 3> kRephrasings{{
         {": At Most 1 required but received ", " is given more than once"},
-        {": 1 required ", " wants a value"},
+        {": 1 required ", " requires a value"},
         {" was given a disallowed flag override", " takes no value"},
     }};
-    for (const auto& [of_cli11, ours] : kInPlaceOf) {
-        const std::size_t at = words.find(of_cli11);
+    for (const auto& [cli11_text, our_text] : kRephrasings) {
+        const std::size_t at = words.find(cli11_text);
         if (at == std::string::npos) continue;
-        // If a flag has a value, CLI11 reports its name without dashes.
+        // If a flag was given a value, CLI11 reports the flag's name without dashes.
         const std::string dashes = words[0] == '-' ? "" : at == 1 ? "-" : "--";
-        return dashes + words.substr(0, at) + ours;
+        return dashes + words.substr(0, at) + our_text;
     }
     return words;
 }
 
-std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error) {
-    const std::vector<std::string> left = command.remaining(), commands = command_names(command);
+/// Describes the error without the reference to --help. `command`: the invoked one.
+std::string error_text(const CLI::App& command, const CLI::ParseError& error) {
+    const std::vector<std::string> unparsed = command.remaining(), commands = command_names(command);
     // Unknown options come before missing ones: a misspelt option is missing, too.
-    for (const std::string& word : left) {
+    for (const std::string& word : unparsed) {
         if (word.size() < 2 || word[0] != '-') continue;
         const std::string option = word.substr(0, word.find('='));
         return "unknown option " + option + io::did_you_mean(option, option_names(command));
     }
-    if (!commands.empty() && !left.empty())
-        return "unknown command \"" + left.front() + '"' + io::did_you_mean(left.front(), commands);
-    if (!commands.empty()) return "a command is missing; " + with_commas(commands) + " are known";
-    if (!left.empty()) return "unexpected argument \"" + left.front() + '"';
-    return said(error);
+    if (!commands.empty() && !unparsed.empty())
+        return "unknown command \"" + unparsed.front() + '"' + io::did_you_mean(unparsed.front(), commands);
+    if (!commands.empty()) return "a command is missing; " + joined_with_commas(commands) + " are known";
+    if (!unparsed.empty()) return "unexpected argument \"" + unparsed.front() + '"';
+    return rephrased(error);
 }
 
 /// Describes an error of the command line: an unknown option or command with the nearest known name, or CLI11's own
-/// message; and where the options are listed. `app`: the program's, after it has thrown `error`.
+/// message; then names the command whose --help lists the options. `app`: the program's, after it has thrown `error`.
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
-    const CLI::App& command = typed_command(app);
-    return what_is_wrong(command, error) + " (" + path_of(command) + " --help lists the " +
+    const CLI::App& command = invoked_command(app);
+    return error_text(command, error) + " (" + path_of(command) + " --help lists the " +
            (command_names(command).empty() ? "options)" : "commands)");
 }
 
 /// Prints the devices of this machine, the CPU first, and on stderr the reason if no GPU can be used.
 void list_devices(bool as_json) {
-    const std::vector<Device> list = devices();
+    const std::vector<Device> found = devices();
     if (!as_json) {
-        for (const Device& device : list) std::printf("%-7s %s\n", device.name.c_str(), device.description.c_str());
+        for (const Device& device : found) std::printf("%-7s %s\n", device.name.c_str(), device.description.c_str());
         std::fflush(stdout);
         if (const std::string why = why_no_cuda_device(); !why.empty())
             std::fprintf(stderr, "realcam: no GPU: %s\n", io::one_line(why).c_str());
@@ -102,54 +103,57 @@ void list_devices(bool as_json) {
     }
     io::JsonWriter json;
     json.begin_array();
-    for (const Device& device : list)
+    for (const Device& device : found)
         json.begin_object().key("device").text(device.name).key("name").text(device.description).end();
     json.end();
     std::puts(json.finish().c_str());
 }
 
-constexpr int kFailure = 2;
+constexpr int kFailure = 2;  // exit code
 
+/// Prints an error, and returns the exit code.
 int fail(const std::string& message) {
     std::fprintf(stderr, "realcam: error: %s\n", io::one_line(message).c_str());
     return kFailure;
 }
 
 /// Adds the commands to `app` in place, because CLI11's objects can be neither copied nor moved.
-void set_up(CLI::App& app, const FilmWriter* film_writer = nullptr) {
+void set_up(CLI::App& app, const FilmWriter* video_writer = nullptr) {
     app.name("realcam");
     app.description("Photographs 3D scenes through real lenses.");
     app.option_defaults()->disable_flag_override();
     set_help(app);
     app.set_version_flag("--version", "realcam " REALCAM_VERSION, "Print the version");
     app.require_subcommand(1);
-    add_render_command(app, film_writer);
+    add_render_command(app, video_writer);
     add_plan_command(app);
     add_lens_command(app);
-    CLI::App* devices = app.add_subcommand("devices", "List what this machine can render with.");
+    CLI::App* devices = app.add_subcommand("devices", "List the devices of this machine for rendering.");
     const auto as_json = std::make_shared<bool>(false);
     devices->add_flag("--json", *as_json, "Print JSON");
     set_examples(*devices, {"realcam devices", "realcam devices --json"});
     devices->callback([as_json] { list_devices(*as_json); });
 }
 
-void list(const CLI::App& command, std::vector<std::string> words, std::vector<ListedCommand>& listed) {
-    const std::vector<const CLI::App*> below = command.get_subcommands({});
-    for (const CLI::App* one : below) {
-        words.push_back(one->get_name());
-        list(*one, words, listed);
+/// Appends all commands below `command` that have no subcommands. `words`: the words that lead to `command`.
+void collect_commands(const CLI::App& command, std::vector<std::string> words, std::vector<ListedCommand>& listed) {
+    const std::vector<const CLI::App*> subcommands = command.get_subcommands({});
+    for (const CLI::App* subcommand : subcommands) {
+        words.push_back(subcommand->get_name());
+        collect_commands(*subcommand, words, listed);
         words.pop_back();
     }
-    if (!below.empty()) return;
+    if (!subcommands.empty()) return;
     ListedCommand& entry = listed.emplace_back(ListedCommand{words, command.get_description(), {}});
     for (const CLI::Option* option : command.get_options())
         if (option != command.get_help_ptr())
             entry.options.push_back({names_of(*option), type_of(*option), option->get_description()});
 }
 
-int run(int argc, char** argv, const FilmWriter* film_writer) {
+/// Parses the arguments and runs the command. Returns the exit code; errors of the command are thrown.
+int run(int argc, char** argv, const FilmWriter* video_writer) {
     CLI::App app;
-    set_up(app, film_writer);
+    set_up(app, video_writer);
     if (argc == 1) {
         std::fputs(app.help().c_str(), stdout);
         return 0;
@@ -170,13 +174,13 @@ std::vector<ListedCommand> listed_commands() {
     CLI::App app;
     set_up(app);
     std::vector<ListedCommand> listed;
-    list(app, {}, listed);
+    collect_commands(app, {}, listed);
     return listed;
 }
 
-int run_command_line(int argc, char** argv, const FilmWriter* film_writer) {
+int run_command_line(int argc, char** argv, const FilmWriter* video_writer) {
     try {
-        return run(argc, argv, film_writer);
+        return run(argc, argv, video_writer);
     } catch (const Interrupted& interrupted) {
         std::fprintf(stderr, "realcam: stopped%s\n", interrupted.remark.c_str());
         return 128 + interrupted.signal;

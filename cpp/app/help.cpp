@@ -9,6 +9,7 @@
 namespace realcam::app {
 namespace {
 
+/// Names of an option with the placeholder of its value, and its description.
 using HelpRow = std::pair<std::string, std::string>;
 
 HelpRow row_of(const CLI::Option& option) {
@@ -17,6 +18,7 @@ HelpRow row_of(const CLI::Option& option) {
             option.get_description() + (option.get_required() ? " [required]" : "")};
 }
 
+/// Help of a command: its arguments, its options by group, its subcommands, and examples.
 io::HelpPage page_of(const CLI::App& command) {
     io::HelpPage page{path_of(command) + " [OPTIONS]", command.get_description(), {{"Arguments", {}}}, {}};
     for (const CLI::Option* option : command.get_options()) {
@@ -34,8 +36,8 @@ io::HelpPage page_of(const CLI::App& command) {
         page.sections.push_back(std::move(section));
     }
     io::HelpPage::Section commands{"Commands", {}};
-    for (const CLI::App* below : command.get_subcommands({}))
-        commands.rows.emplace_back(below->get_name(), below->get_description());
+    for (const CLI::App* subcommand : command.get_subcommands({}))
+        commands.rows.emplace_back(subcommand->get_name(), subcommand->get_description());
     if (!commands.rows.empty()) page.usage += " COMMAND [ARGS]...";
     page.sections.push_back(std::move(commands));
     std::istringstream examples(command.get_footer());

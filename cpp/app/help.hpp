@@ -5,19 +5,19 @@
 
 namespace realcam::app {
 
-/// Prints the help of the program, and of all commands that are added afterwards, through io::text_of.
+/// Adds --help to the program and to all commands that are added afterwards, formatted by io::text_of.
 void set_help(CLI::App& app);
 
-/// Sets the example command lines at the end of a command's help.
+/// Sets the example command lines that end a command's help.
 void set_examples(CLI::App& command, const std::vector<std::string>& examples);
 
-/// Full name of a command: "realcam lens info".
+/// Full name of a command, such as "realcam lens info".
 std::string path_of(const CLI::App& command);
 
-/// "-o" and "--output"; empty for a positional argument.
+/// Names of an option, such as "-o" and "--output"; empty for a positional argument.
 std::vector<std::string> names_of(const CLI::Option& option);
 
-/// "FILE"; empty for a flag.
+/// Placeholder of an option's value, such as "FILE"; empty for a flag.
 std::string type_of(const CLI::Option& option);
 
 }  // namespace realcam::app

@@ -11,9 +11,9 @@ public:
     Interrupt& operator=(const Interrupt&) = delete;
     ~Interrupt();
 
-    /// The last signal received; 0 before the first.
+    /// Number of the last signal received; 0 before the first.
     static int signal();
-    /// Returns true after SIGTERM or a second Ctrl-C: nothing more is to be written.
+    /// Returns true after SIGTERM or a second Ctrl-C: the program must end without writing anything more.
     static bool is_final();
 };
 

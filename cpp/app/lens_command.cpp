@@ -8,16 +8,18 @@
 #include "../io/text/printable.hpp"
 #include "../optics/lens/rings.hpp"
 #include "help.hpp"
+#include "lens_file_options.hpp"
 #include "lens_report.hpp"
-#include "lens_words.hpp"
 #include "values.hpp"
 
 namespace realcam::app {
 namespace {
 
+/// Values of the options of `lens info`, as typed; empty: not given.
 struct InfoOptions {
-    std::string lens, zoom, f_number, focus;
-    LensWords file;
+    std::string lens;  ///< bundled lens or lens file
+    std::string zoom, f_number, focus;
+    LensFileOptions file;
     bool as_json = false;
 };
 
@@ -30,6 +32,7 @@ void run_info(const InfoOptions& options) {
     std::fputs((options.as_json ? lens_as_json(lens) : lens_as_text(lens)).c_str(), stdout);
 }
 
+/// Prints names and titles of the bundled lenses, then names and files of those in the folders of the lens path.
 void run_list(bool as_json, const std::vector<std::string>& folders) {
     set_lens_path(folders);
     io::JsonWriter json;
@@ -55,7 +58,7 @@ void run_list(bool as_json, const std::vector<std::string>& folders) {
 }  // namespace
 
 void add_lens_command(CLI::App& app) {
-    CLI::App* lens = app.add_subcommand("lens", "Look at lenses.");
+    CLI::App* lens = app.add_subcommand("lens", "Print data of lenses.");
     lens->require_subcommand(1);
 
     CLI::App* info = lens->add_subcommand("info", "Print a lens's table of surfaces and its first-order data.");
@@ -67,8 +70,7 @@ void add_lens_command(CLI::App& app) {
     info->add_option("--f-number", options->f_number, "Close the diaphragm to f/N")->type_name("N");
     info->add_option("--focus", options->focus, "Focus on an object plane this far from the film, or inf")
         ->type_name("METRES");
-    info->add_option("--zoom", options->zoom,
-                     "Zoom position, by its name in `realcam lens info` [as the lens's file gives it]")
+    info->add_option("--zoom", options->zoom, "Zoom position, by its name in `realcam lens info` [as in the lens file]")
         ->type_name("NAME");
     add_lens_options(*info, options->file);
     info->add_flag("--json", options->as_json, "Print JSON; null stands for infinite, and for the radius of a plane");

@@ -3,7 +3,7 @@
 
 namespace realcam::app {
 
-/// Adds `lens info` and `lens list`.
+/// Adds the commands `lens info` and `lens list`.
 void add_lens_command(CLI::App& app);
 
 }  // namespace realcam::app

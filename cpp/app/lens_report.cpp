@@ -21,9 +21,11 @@
 namespace realcam::app {
 namespace {
 
-using Row = std::array<std::string, 7>;
+/// Cells of the surface table: number, type, radius, thickness, material, clear semi-diameter, remarks.
+using TableRow = std::array<std::string, 7>;
 
-std::string fixed(double value, int decimals = 4) {
+/// Formats with fixed decimals; "none" for NaN, "inf" or "-inf" for infinity.
+std::string fixed_point(double value, int decimals = 4) {
     if (!std::isfinite(value)) return std::isnan(value) ? "none" : value > 0 ? "inf" : "-inf";
     char text[40];
     std::snprintf(text, sizeof text, "%.*f", decimals, value);
@@ -40,6 +42,7 @@ std::string type_name(SurfaceType type) {
     return "refracting";
 }
 
+/// Material behind a refracting surface; empty for other surfaces.
 std::string material_name(const Surface& surface) {
     if (surface.type != SurfaceType::refracting) return "";
     return surface.material.is_air() ? "air" : surface.material.label;
@@ -58,11 +61,12 @@ std::string coating_name(const Coating& coating) {
     return std::to_string(coating.layers.size()) + " layers";
 }
 
+/// "(1, 2, 3)"
 std::string vector_text(Vec3d v) {
     return '(' + number_text(v.x, 6) + ", " + number_text(v.y, 6) + ", " + number_text(v.z, 6) + ')';
 }
 
-/// Displacement of a surface in words; empty if it is not displaced.
+/// Describes the decentre and tilt of a surface or the film; empty if it is not displaced.
 std::string placement_text(const SurfacePlacement& placement) {
     if (placement.is_in_place()) return "";
     std::string text = placement.returns ? "moved alone" : "moved";
@@ -71,6 +75,7 @@ std::string placement_text(const SurfacePlacement& placement) {
     return text;
 }
 
+/// Radius and displacement of the film; empty for a plane film in place.
 std::string film_remarks(const LensSystem& lens) {
     const std::string placement = placement_text(lens.film_placement);
     if (std::isinf(lens.film_radius_of_curvature)) return placement;
@@ -78,7 +83,8 @@ std::string film_remarks(const LensSystem& lens) {
            (placement.empty() ? "" : ", " + placement);
 }
 
-std::string remarks(const Surface& surface) {
+/// Properties of a surface that have no column of their own.
+std::string surface_remarks(const Surface& surface) {
     std::string text;
     const auto add = [&](const std::string& mark) { text += (text.empty() ? "" : ", ") + mark; };
     const SurfaceForm& form = surface.form;
@@ -96,29 +102,31 @@ std::string remarks(const Surface& surface) {
     return text;
 }
 
+/// Table of the surfaces and the film, followed by a line of coefficients for each asphere.
 std::string table(const LensSystem& lens) {
-    std::vector<Row> rows{{"#", "type", "radius", "thickness", "material", "clear semi-d.", ""},
-                          {"", "", "mm", "mm", "", "mm", ""}};
+    std::vector<TableRow> rows{{"#", "type", "radius", "thickness", "material", "clear semi-d.", ""},
+                               {"", "", "mm", "mm", "", "mm", ""}};
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
         const Surface& s = lens.surfaces[i];
-        const std::string radius = s.curvature != 0 ? fixed(1 / s.curvature) : s.bends_light() ? "plane" : "";
-        const bool last = i + 1 == lens.surfaces.size();
-        const bool closed = s.type == SurfaceType::stop && !lens.is_wide_open();
+        const std::string radius = s.curvature != 0 ? fixed_point(1 / s.curvature) : s.bends_light() ? "plane" : "";
+        const bool is_last = i + 1 == lens.surfaces.size();
+        const bool is_stopped_down = s.type == SurfaceType::stop && !lens.is_wide_open();
         rows.push_back({std::to_string(i + 1), type_name(s.type), radius,
-                        fixed(last ? lens.film_distance : s.thickness), material_name(s),
-                        fixed(closed ? lens.stop_semi_diameter : s.clear_semi_diameter), remarks(s)});
+                        fixed_point(is_last ? lens.film_distance : s.thickness), material_name(s),
+                        fixed_point(is_stopped_down ? lens.stop_semi_diameter : s.clear_semi_diameter),
+                        surface_remarks(s)});
     }
     rows.push_back({"", "film", "", "", "", "", film_remarks(lens)});
     std::array<std::size_t, 7> widths{};
-    for (const Row& row : rows)
+    for (const TableRow& row : rows)
         for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
     std::string text;
-    for (const Row& row : rows) {
+    for (const TableRow& row : rows) {
         std::string line;
         for (std::size_t c = 0; c < row.size(); ++c) {
             const std::string gap(widths[c] - row[c].size(), ' ');
-            const bool words = c == 1 || c == 4 || c == 6;
-            line += "  " + (words ? row[c] + gap : gap + row[c]);
+            const bool left_aligned = c == 1 || c == 4 || c == 6;  // type, material, remarks
+            line += "  " + (left_aligned ? row[c] + gap : gap + row[c]);
         }
         text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
     }
@@ -135,68 +143,75 @@ std::string table(const LensSystem& lens) {
 
 /// Full field angles across width, height and diagonal, in degrees; NaN if no light reaches the ends of that dimension.
 std::array<double, 3> field_of_view(const LensSystem& lens) {
-    const auto full = [&](double size) { return 2 * field_angle(lens, size / 2) * 180 / std::numbers::pi; };
-    return {full(lens.film_width), full(lens.film_height), full(hypotenuse(lens.film_width, lens.film_height))};
+    const auto full_angle = [&](double size) { return 2 * field_angle(lens, size / 2) * 180 / std::numbers::pi; };
+    return {full_angle(lens.film_width), full_angle(lens.film_height),
+            full_angle(hypotenuse(lens.film_width, lens.film_height))};
 }
 
+/// Describes the result of field_of_view.
 std::string field_text(const std::array<double, 3>& degrees) {
     if (std::ranges::none_of(degrees, [](double d) { return std::isnan(d); }))
-        return fixed(degrees[0], 1) + " x " + fixed(degrees[1], 1) + " degrees, " + fixed(degrees[2], 1) +
-               " across the diagonal";
-    const char* across[] = {"width", "height", "diagonal"};
-    std::string lit, dark;
+        return fixed_point(degrees[0], 1) + " x " + fixed_point(degrees[1], 1) + " degrees, " +
+               fixed_point(degrees[2], 1) + " across the diagonal";
+    const char* dimensions[] = {"width", "height", "diagonal"};
+    std::string angles, missing;
     for (std::size_t i = 0; i < degrees.size(); ++i)
         if (std::isnan(degrees[i]))
-            dark += std::string(dark.empty() ? "no light reaches the ends of the film's " : " and ") + across[i];
+            missing +=
+                std::string(missing.empty() ? "no light reaches the ends of the film's " : " and ") + dimensions[i];
         else
-            lit += fixed(degrees[i], 1) + " degrees across the film's " + across[i] + "; ";
-    return lit + dark;
+            angles += fixed_point(degrees[i], 1) + " degrees across the film's " + dimensions[i] + "; ";
+    return angles + missing;
 }
 
-/// Assumptions about the coatings that the lens does not state; empty if it states all.
+/// Assumptions about coatings that the lens file does not specify; empty if it specifies all.
 std::string coating_assumptions(const LensSystem& lens) {
     const std::vector<int> unknown = surfaces_with_unknown_coating(lens);
     const auto mirrors = std::count_if(unknown.begin(), unknown.end(), [&](int i) {
         return lens.surfaces[static_cast<std::size_t>(i)].type == SurfaceType::mirror;
     });
-    const auto faces = static_cast<std::ptrdiff_t>(unknown.size()) - mirrors;
-    const auto assumed = [](std::ptrdiff_t count, const std::string& what, const std::string& as) {
+    const auto refracting = static_cast<std::ptrdiff_t>(unknown.size()) - mirrors;
+    const auto assumed = [](std::ptrdiff_t count, const std::string& part, const std::string& assumption) {
         if (count == 0) return std::string();
-        return std::to_string(count) + ' ' + what + (count == 1 ? " is" : "s are") + " taken for " + as;
+        return std::to_string(count) + ' ' + part + (count == 1 ? " is" : "s are") + " assumed to be " + assumption;
     };
-    const std::string glass = assumed(faces, "face", "bare glass"), metal = assumed(mirrors, "mirror", "perfect");
+    const std::string glass = assumed(refracting, "face", "bare glass"), metal = assumed(mirrors, "mirror", "perfect");
     if (unknown.empty()) return "";
-    return "not stated: " + glass + (glass.empty() || metal.empty() ? "" : ", ") + metal;
+    return "not specified: " + glass + (glass.empty() || metal.empty() ? "" : ", ") + metal;
 }
 
-/// Returns std::nullopt if the index of a material is unknown at the design wavelength; `why` then names it.
-std::optional<double> known_t_stop(const LensSystem& lens, std::string& why) {
+/// T-stop at the design wavelength. Returns std::nullopt if the index of a material is unknown at it; `reason` then
+/// names the material.
+std::optional<double> t_stop_if_known(const LensSystem& lens, std::string& reason) {
     try {
         return t_stop(lens, lens.wavelength_nm);
     } catch (const InputError& error) {
-        why = error.what();
+        reason = error.what();
         return std::nullopt;
     }
 }
 
+/// T-stop, or the reason why it is unknown.
 std::string t_stop_text(const LensSystem& lens) {
-    std::string why;
-    const std::optional<double> value = known_t_stop(lens, why);
-    return value ? "T/" + number_text(*value) : "unknown: " + why;
+    std::string reason;
+    const std::optional<double> value = t_stop_if_known(lens, reason);
+    return value ? "T/" + number_text(*value) : "unknown: " + reason;
 }
 
-/// One line per zoom position: its focal length and f-number at the focus distance for which the lens file lists it.
+/// One line per zoom position: its focal length and f-number at the focus distance for which the lens file specifies
+/// it.
 std::vector<std::string> zoom_lines(const LensSystem& lens) {
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < lens.zoom.positions.size(); ++i) {
-        const LensSystem there = at_zoom_position(lens, static_cast<int>(i));
-        const FirstOrder data = first_order(there, lens.wavelength_nm);
-        lines.push_back(lens.zoom.positions[i].name + ": " + fixed(data.effective_focal_length) + " mm f/" +
+        const LensSystem zoomed = at_zoom_position(lens, static_cast<int>(i));
+        const FirstOrder data = first_order(zoomed, lens.wavelength_nm);
+        lines.push_back(lens.zoom.positions[i].name + ": " + fixed_point(data.effective_focal_length) + " mm f/" +
                         number_text(data.f_number) + (static_cast<int>(i) == lens.zoom.current ? ", this one" : ""));
     }
     return lines;
 }
 
+/// Shape of the diaphragm's opening.
 std::string iris_text(const IrisShape& iris) {
     if (iris.blades == 0) return "round";
     return std::to_string(iris.blades) + " blades, rounding " + number_text(iris.rounding) + ", rotation " +
@@ -215,7 +230,7 @@ std::string lens_as_text(const LensSystem& lens) {
         text += "  " + what + value + '\n';
     };
     const auto mm = [](double value) {
-        const std::string number = fixed(value);
+        const std::string number = fixed_point(value);
         return std::string(number.size() < 12 ? 12 - number.size() : 0, ' ') + number + " mm";
     };
     text += "At " + number_text(lens.wavelength_nm, 7) + " nm; positions are measured from the front vertex.\n";
@@ -230,7 +245,7 @@ std::string lens_as_text(const LensSystem& lens) {
     line("f-number", std::string(7, ' ') + "f/" + f_number + (f_number == focused ? "" : ", as focused f/" + focused));
     line("T-stop", std::string(7, ' ') + t_stop_text(lens));
     const std::string assumptions = coating_assumptions(lens);
-    line("coatings", "     " + (assumptions.empty() ? std::string("as stated") : assumptions));
+    line("coatings", "     " + (assumptions.empty() ? std::string("as specified") : assumptions));
     line("entrance pupil position", mm(data.entrance_pupil_position));
     line("entrance pupil diameter", mm(data.entrance_pupil_diameter));
     line("exit pupil position", mm(data.exit_pupil_position));
@@ -281,12 +296,12 @@ std::string lens_as_json(const LensSystem& lens) {
         json.key("zoom_position").text(lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].name);
         json.key("zoom_positions").begin_array();
         for (std::size_t i = 0; i < lens.zoom.positions.size(); ++i) {
-            const LensSystem there = at_zoom_position(lens, static_cast<int>(i));
-            const FirstOrder at_rest = first_order(there, lens.wavelength_nm);
+            const LensSystem zoomed = at_zoom_position(lens, static_cast<int>(i));
+            const FirstOrder first_order_data = first_order(zoomed, lens.wavelength_nm);
             json.begin_object().key("name").text(lens.zoom.positions[i].name);
-            json.key("effective_focal_length_mm").number(at_rest.effective_focal_length);
-            json.key("f_number").number(at_rest.f_number);
-            json.key("film_distance_mm").number(there.film_distance);
+            json.key("effective_focal_length_mm").number(first_order_data.effective_focal_length);
+            json.key("f_number").number(first_order_data.f_number);
+            json.key("film_distance_mm").number(zoomed.film_distance);
             json.key("thickness_mm").begin_object();
             for (std::size_t k = 0; k < lens.zoom.surfaces.size(); ++k)
                 json.key(std::to_string(lens.zoom.surfaces[k] + 1)).number(lens.zoom.positions[i].thicknesses[k]);
@@ -301,9 +316,9 @@ std::string lens_as_json(const LensSystem& lens) {
     add("front_focal_distance_mm", data.front_focal_distance);
     add("f_number", data.f_number);
     add("f_number_at_infinity", f_number_at_infinity(lens));
-    std::string why;
-    add("t_stop", known_t_stop(lens, why).value_or(std::numeric_limits<double>::quiet_NaN()));
-    if (!why.empty()) json.key("t_stop_unknown").text(why);
+    std::string reason;
+    add("t_stop", t_stop_if_known(lens, reason).value_or(std::numeric_limits<double>::quiet_NaN()));
+    if (!reason.empty()) json.key("t_stop_unknown").text(reason);
     json.key("coating_assumptions").text(coating_assumptions(lens));
     add("entrance_pupil_position_mm", data.entrance_pupil_position);
     add("entrance_pupil_diameter_mm", data.entrance_pupil_diameter);

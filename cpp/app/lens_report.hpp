@@ -5,9 +5,9 @@
 
 namespace realcam::app {
 
-/// Surface table and first-order data as text.
+/// Surface table and first-order data of a lens at its design wavelength, as text.
 std::string lens_as_text(const LensSystem& lens);
-/// The same data as JSON; null if a value is infinite or does not exist.
+/// The same data as a JSON object; null stands for a value that is infinite or does not exist.
 std::string lens_as_json(const LensSystem& lens);
 
 }  // namespace realcam::app

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// True if both names denote the same file, even if it does not exist yet.
+/// True if both paths denote the same file, even if it does not exist yet.
 bool same_file(const std::string& a, const std::string& b) {
     std::error_code error;
     if (fs::equivalent(a, b, error)) return true;
@@ -29,23 +29,25 @@ bool same_file(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-bool is_film(const std::string& output) {
+bool is_video(const std::string& output) {
     return io::suffix_of(output) == ".mp4";
 }
 
 void check_outputs(const std::vector<std::string>& outputs) {
     for (auto it = outputs.begin(); it != outputs.end(); ++it) {
-        if (!is_film(*it)) image_io::check_image_path(*it);
+        if (!is_video(*it)) image_io::check_image_path(*it);
         if (std::any_of(outputs.begin(), it, [&](const std::string& other) { return same_file(other, *it); }))
             throw InputError("--output: \"" + *it + "\" is given twice");
     }
 }
 
-std::string film_digest(const shot::ShotRequest& request, const Camera& camera, const std::string& more) {
+std::string settings_digest(const shot::ShotRequest& request, const Camera& camera,
+                            const std::string& further_settings) {
     std::ostringstream text;
-    text.precision(17);
+    text.precision(17);  // distinguishes all doubles
     for (const auto& [name, value] : io::metadata_of(camera, request.settings).entries())
         if (name != "realcam:version") text << name << '=' << value << '\n';
+    // Settings that the metadata lack; -1 stands for a value that is not specified.
     const RenderSettings& s = request.settings;
     const Vec3f light = request.environment_cd_m2.value_or(Vec3f{-1, -1, -1});
     text << camera.film.width << ' ' << camera.film.height << ' ' << request.scale << ' ' << light.x << ' ' << light.y
@@ -59,20 +61,24 @@ std::string film_digest(const shot::ShotRequest& request, const Camera& camera, 
     if (s.noise)
         text << ' ' << s.noise->noise << ' ' << static_cast<int>(s.noise->unit) << ' ' << s.noise->most_samples << ' '
              << s.noise->seconds;
-    text << '\n' << more;
-    std::uint64_t digest = 0xcbf29ce484222325;  // FNV-1a
+    text << '\n' << further_settings;
+    // The 64-bit FNV-1a hash: http://www.isthe.com/chongo/tech/comp/fnv
+    constexpr std::uint64_t kOffsetBasis = 0xcbf29ce484222325, kPrime = 0x100000001b3;
+    std::uint64_t digest = kOffsetBasis;
     const auto add = [&](std::string_view bytes) {
-        for (const char c : bytes) digest = (digest ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+        for (const char c : bytes) digest = (digest ^ static_cast<unsigned char>(c)) * kPrime;
     };
     add(text.str());
-    // Hashes contents alone, in an order independent of names: a film's folder may be renamed.
+    // Hashes the contents alone, in an order independent of file names, so that a folder may be renamed between two
+    // runs.
     std::vector<std::string> contents;
     for (const std::string& path : io::recorded_inputs()) {
         io::RegularFile file(path);
-        const std::uint64_t before = std::exchange(digest, 0xcbf29ce484222325);
-        std::string piece(1 << 20, '\0');
-        while (const std::size_t n = file.read(piece.data(), piece.size())) add(std::string_view(piece).substr(0, n));
-        contents.push_back(std::to_string(std::exchange(digest, before)));
+        const std::uint64_t settings_hash = std::exchange(digest, kOffsetBasis);
+        std::string buffer(1 << 20, '\0');
+        while (const std::size_t n = file.read(buffer.data(), buffer.size()))
+            add(std::string_view(buffer).substr(0, n));
+        contents.push_back(std::to_string(std::exchange(digest, settings_hash)));
     }
     std::sort(contents.begin(), contents.end());
     for (const std::string& content : contents) add(content + '\n');
@@ -86,15 +92,15 @@ std::vector<int> frame_numbers(const std::string& text) {
     std::smatch found;
     std::vector<int> numbers;
     if (std::regex_match(text, found, kRange)) {
-        const auto number = [&](std::size_t i, int without) {
-            return found[i].matched ? std::stoi(found[i]) : without;
+        const auto number = [&](std::size_t group, int default_value) {
+            return found[group].matched ? std::stoi(found[group]) : default_value;
         };
         const int first = number(1, 0), last = number(2, first), step = number(3, 1);
         for (int n = first; n <= last && step > 0; n += step) numbers.push_back(n);
     }
     if (numbers.empty())
         throw InputError("--frames: \"" + text.substr(0, 40) +
-                         "\": expected a number, 1-240 or 1-240x2, the smaller one first");
+                         "\": expected a number, or a range with the smaller number first, such as 1-240 or 1-240x2");
     return numbers;
 }
 
@@ -103,9 +109,10 @@ std::string frame_file(const std::string& output, int number) {
     const std::string name = path.filename().string();
     const std::size_t end = name.find_last_of('#');
     const std::size_t begin = end == name.npos ? end : name.find_last_not_of('#', end) + 1;  // npos + 1 is 0
+    constexpr std::size_t kMaxDigits = 20;
     char digits[24];
     std::snprintf(digits, sizeof digits, "%0*d",
-                  end == name.npos ? 4 : static_cast<int>(std::min<std::size_t>(end + 1 - begin, 20)), number);
+                  end == name.npos ? 4 : static_cast<int>(std::min(end + 1 - begin, kMaxDigits)), number);
     const std::string numbered = end == name.npos ? path.stem().string() + '.' + digits + path.extension().string()
                                                   : name.substr(0, begin) + digits + name.substr(end + 1);
     return (path.parent_path() / numbered).string();
@@ -113,69 +120,69 @@ std::string frame_file(const std::string& output, int number) {
 
 namespace {
 
-namespace fs = std::filesystem;
-
-std::string folder_of(const std::string& film) {
-    return film + ".frames";
+/// Folder that holds the frames of a video until it is complete.
+std::string frame_folder(const std::string& video) {
+    return video + ".frames";
 }
 
-std::string frame_of(const std::string& film, int frame) {
-    return frame_file((fs::path(folder_of(film)) / "######.png").string(), frame);
+/// File name of a frame's picture in the video's frame folder.
+std::string frame_picture(const std::string& video, int frame) {
+    return frame_file((fs::path(frame_folder(video)) / "######.png").string(), frame);
 }
 
 }  // namespace
 
-FilmOutputs::FilmOutputs(const std::vector<std::string>& outputs, const FilmWriter* writer) : writer_(writer) {
-    std::partition_copy(outputs.begin(), outputs.end(), std::back_inserter(films_), std::back_inserter(pictures_),
-                        is_film);
+OutputFiles::OutputFiles(const std::vector<std::string>& outputs, const FilmWriter* writer) : writer_(writer) {
+    std::partition_copy(outputs.begin(), outputs.end(), std::back_inserter(videos_), std::back_inserter(pictures_),
+                        is_video);
 }
 
-void FilmOutputs::check(const std::vector<int>& frames) const {
-    if (!films_.empty() && frames.empty())
-        throw InputError("--frames is missing: a film, .mp4, is made of frames, as of 1-240");
-    if (!films_.empty() && !writer_)
-        throw InputError("--output: \"" + films_.front() +
-                         "\": this program writes pictures; realcam of Python (realcam[video]) makes films of them");
-    std::vector<std::string> outputs = films_;
+void OutputFiles::check(const std::vector<int>& frames) const {
+    if (!videos_.empty() && frames.empty())
+        throw InputError("--frames is missing: a video (.mp4) needs the numbers of its frames, such as 1-240");
+    if (!videos_.empty() && !writer_)
+        throw InputError("--output: \"" + videos_.front() +
+                         "\": this program writes no videos; the command of the Python package realcam[video] does");
+    std::vector<std::string> outputs = videos_;
     for (const std::string& picture : pictures_)
         outputs.push_back(frames.empty() ? picture : frame_file(picture, frames.front()));
     check_outputs(outputs);
-    for (const std::string& film : films_) writer_->check(film);
+    for (const std::string& video : videos_) writer_->check(video);
 }
 
-void FilmOutputs::begin() const {
-    for (const std::string& film : films_) {
+void OutputFiles::create_frame_folders() const {
+    for (const std::string& video : videos_) {
         std::error_code error;
-        fs::create_directory(folder_of(film), error);
-        if (error) throw ImageFileError(folder_of(film) + ": cannot be made: " + error.message());
+        fs::create_directory(frame_folder(video), error);
+        if (error) throw ImageFileError(frame_folder(video) + ": cannot be created: " + error.message());
     }
 }
 
-std::vector<std::string> FilmOutputs::all_files(const std::vector<int>& frames) const {
-    std::vector<std::string> all = films_;
+std::vector<std::string> OutputFiles::all_files(const std::vector<int>& frames) const {
+    std::vector<std::string> all = videos_;
     for (const int frame : frames)
         for (std::string& file : files_of(frame)) all.push_back(std::move(file));
     return all;
 }
 
-std::vector<std::string> FilmOutputs::files_of(int frame) const {
+std::vector<std::string> OutputFiles::files_of(int frame) const {
     std::vector<std::string> files;
     for (const std::string& picture : pictures_) files.push_back(frame_file(picture, frame));
-    for (const std::string& film : films_) files.push_back(frame_of(film, frame));
+    for (const std::string& video : videos_) files.push_back(frame_picture(video, frame));
     return files;
 }
 
-std::vector<std::string> FilmOutputs::finish(const std::vector<int>& frames, double frames_per_second,
-                                             const KeepGoing& keep_going) const {
-    for (const std::string& film : films_) {
+std::vector<std::string> OutputFiles::encode_videos(const std::vector<int>& frames, double frames_per_second,
+                                                    const KeepGoing& keep_going) const {
+    for (const std::string& video : videos_) {
         std::vector<std::string> pictures;
-        for (const int frame : frames) pictures.push_back(frame_of(film, frame));
-        writer_->write(film, pictures, frames_per_second, keep_going);
+        for (const int frame : frames) pictures.push_back(frame_picture(video, frame));
+        writer_->write(video, pictures, frames_per_second, keep_going);
         std::error_code error;  // leftover files do no harm
         for (const std::string& picture : pictures) fs::remove(picture, error);
-        fs::remove(folder_of(film), error);  // fails if the folder holds other frames, which another video may need
+        fs::remove(frame_folder(video), error);  // fails if the folder holds other frames, which another video may need
     }
-    return films_;
+    return videos_;
 }
 
 }  // namespace realcam::app

@@ -4,15 +4,17 @@
 
 namespace realcam::app {
 
-/// One line on stderr that is redrawn in place; silent if stderr is no terminal. The destructor clears it.
+/// Progress on stderr, a line that is redrawn in place. Draws nothing if stderr is not a terminal. The destructor
+/// clears the line.
 class ProgressBar {
 public:
-    explicit ProgressBar(std::string what, bool is_shown = true);
+    /// `label`: text at the start of the line. `is_shown`: false to draw nothing.
+    explicit ProgressBar(std::string label, bool is_shown = true);
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
     ~ProgressBar();
 
-    /// `done`: 0 to 1. Draws at most ten times a second.
+    /// Draws the completed fraction, 0 to 1, and the estimated remaining time. Draws at most ten times a second.
     void show(double done);
     /// Draws the elapsed seconds, for work of unknown length.
     void show_seconds();
@@ -25,8 +27,8 @@ private:
 
     using Clock = std::chrono::steady_clock;
 
-    std::string what_;
-    bool is_shown_, drawn_ = false;
+    std::string label_;
+    bool is_shown_, is_drawn_ = false;
     Clock::time_point start_, last_;
 };
 

@@ -35,26 +35,28 @@
 namespace realcam::app {
 namespace {
 
-void say(const std::string& text) {
+void print_message(const std::string& text) {
     std::fprintf(stderr, "realcam: %s\n", text.c_str());
 }
 
-/// Runs `work`; if memory runs out, the error names its purpose, `what`.
+/// Runs `work`. If memory runs out, throws Error whose message ends with `purpose`, such as "while reading room.obj".
 template <class Work>
-auto with_memory_for(const std::string& what, Work&& work) {
+auto with_memory_for(const std::string& purpose, Work&& work) {
     try {
         return work();
     } catch (const std::bad_alloc&) {
-        throw Error("out of memory: " + what);
+        throw Error("out of memory: " + purpose);
     }
 }
 
-bool is_wanted() {
+/// Passed as KeepGoing: false once Ctrl-C or SIGTERM has been received.
+bool is_not_interrupted() {
     return Interrupt::signal() == 0;
 }
 
-/// Like is_wanted, for work that writes the samples taken so far to a file: false after the final signal.
-bool is_to_be_finished() {
+/// Passed as KeepGoing where the samples taken so far are developed and written after a first Ctrl-C: false only after
+/// the final signal (Interrupt::is_final).
+bool keeps_partial_picture() {
     return !Interrupt::is_final();
 }
 
@@ -68,6 +70,7 @@ auto until_interrupted(Work&& work) {
     }
 }
 
+/// Throws Error if the picture and its layers would need more memory than is free.
 void check_memory(const Film& film, LayerSet layers) {
     // Memory that the CPU's session needs while it develops its sums into a picture.
     std::size_t bytes_per_pixel = sizeof(PixelSum) + 16;
@@ -75,12 +78,12 @@ void check_memory(const Film& film, LayerSet layers) {
     if (layers.has_any(kPixelCentreLayers)) bytes_per_pixel += sizeof(PixelCentreSurface);
     for (std::size_t i = 0; i < kLayers.size(); ++i)
         if (layers.has(static_cast<Layer>(i))) bytes_per_pixel += 4 * static_cast<std::size_t>(kLayers[i].channels);
-    const double wanted = static_cast<double>(bytes_per_pixel) * film.width * film.height;
-    const auto free = static_cast<double>(io::free_memory());
-    if (wanted > free)
+    const double needed_bytes = static_cast<double>(bytes_per_pixel) * film.width * film.height;
+    const auto free_bytes = static_cast<double>(io::free_memory());
+    if (needed_bytes > free_bytes)
         throw Error("out of memory: a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) +
-                    " pixels needs " + number_text(wanted / 1e9, 3) + " GB, and " + number_text(free / 1e9, 3) +
-                    " GB are free; use a smaller --resolution");
+                    " pixels needs " + number_text(needed_bytes / 1e9, 3) + " GB, and " +
+                    number_text(free_bytes / 1e9, 3) + " GB are free; use a smaller --resolution");
 }
 
 bool is_file(const std::string& path) {
@@ -88,17 +91,18 @@ bool is_file(const std::string& path) {
     return std::filesystem::is_regular_file(path, error);
 }
 
-/// One run of the command.
+/// One run of `realcam render` or `realcam plan`.
 class Run {
 public:
-    Run(const RenderWords& words, const FilmWriter* film_writer)
-        : words_(words), outputs_(words.outputs, film_writer) {}
+    Run(const RenderOptions& options, const FilmWriter* video_writer)
+        : options_(options), outputs_(options.outputs, video_writer) {}
 
-    void photograph() {
+    /// Renders the picture or frames and writes them. Throws Error, and Interrupted after a signal.
+    void render_shot() {
         start_ = std::chrono::steady_clock::now();
-        shot::ShotRequest request = understand(words_);
-        const std::vector<int> frames = words_.frames ? frame_numbers(*words_.frames) : std::vector<int>();
-        if (!(words_.frames_per_second > 0 && std::isfinite(words_.frames_per_second)))
+        shot::ShotRequest request = request_from_options(options_);
+        const std::vector<int> frames = options_.frames ? frame_numbers(*options_.frames) : std::vector<int>();
+        if (!(options_.frames_per_second > 0 && std::isfinite(options_.frames_per_second)))
             throw InputError("--fps must be more than 0 frames per second");
         outputs_.check(frames);
         resolve_keys(request);
@@ -107,32 +111,35 @@ public:
         std::optional<Denoiser> denoiser = denoiser_for(request);
         if (denoiser) request.settings.layers.add(kDenoiserLayers);
         check_memory(camera.film, request.settings.layers);
-        // Created first, because reading a scene may take long.
-        const auto session = make_session(words_.device, [this](const std::string& text) { warn(text); });
+        // Created before the scene is read, which may take long: a device that is missing is then reported at once.
+        const auto session = make_session(options_.device, [this](const std::string& text) { warn(text); });
         shot::Shot shot = set_up_shot(request, std::move(camera));
-        for (const std::string& file : frames.empty() ? words_.outputs : outputs_.all_files(frames))
+        for (const std::string& file : frames.empty() ? options_.outputs : outputs_.all_files(frames))
             image_io::check_no_input(file);
-        if (!frames.empty()) film_digest_ = film_digest(request, shot.camera, std::to_string(words_.frames_per_second));
-        const Darkroom darkroom{*session, denoiser ? &*denoiser : nullptr, written_layers};
+        if (!frames.empty())
+            settings_digest_ = settings_digest(request, shot.camera, std::to_string(options_.frames_per_second));
+        const PictureTools tools{*session, denoiser ? &*denoiser : nullptr, written_layers};
         // Until this point the disk is untouched, and a signal may simply end the program.
         const Interrupt interrupt;
         meter_exposure(*session, shot, request);
-        if (!frames.empty()) return film(darkroom, shot, request, frames);
+        if (!frames.empty()) return render_frames(tools, shot, request, frames);
         shot.camera = shaken(std::move(shot.camera), request.shake);
-        const std::string decisions = settle(*session, shot, request, {});
+        const std::string plan_summary = resolve_plan(*session, shot, request, {});
         for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens)) warn(notice);
-        const std::string figures = take(darkroom, shot, request, decisions, words_.outputs, is_to_be_finished);
-        if (!words_.is_quiet || words_.as_json) std::fputs(figures.c_str(), stdout);
+        const std::string report =
+            take_and_write(tools, shot, request, plan_summary, options_.outputs, keeps_partial_picture);
+        if (!options_.is_quiet || options_.as_json) std::fputs(report.c_str(), stdout);
         if (Interrupt::signal() != 0)
             throw Interrupted{Interrupt::signal(), "; the picture has the samples that were taken until then"};
     }
 
+    /// Prints which effects the planner chooses for the shot, without rendering it.
     void plan(bool as_json) {
-        shot::ShotRequest request = understand(words_);
+        shot::ShotRequest request = request_from_options(options_);
         request.settings.effects.is_automatic = true;
         resolve_keys(request);
         Camera camera = camera_of(request);
-        const auto session = make_session(words_.device, [this](const std::string& text) { warn(text); });
+        const auto session = make_session(options_.device, [this](const std::string& text) { warn(text); });
         shot::Shot shot = set_up_shot(request, std::move(camera));
         meter(shot, request, *session, {});
         shot.camera = shaken(std::move(shot.camera), request.shake);
@@ -141,11 +148,11 @@ public:
     }
 
 private:
-    /// Everything that turns a shot into a picture.
-    struct Darkroom {
+    /// Session and denoiser with which all pictures of this run are taken.
+    struct PictureTools {
         Session& session;
         Denoiser* denoiser;  ///< null: no denoising
-        LayerSet written_layers;
+        LayerSet written_layers;  ///< layers that the user requested; those for the denoiser are not written
     };
 
     /// Returns a denoiser if the user requested one, or if .png may need one (denoises_if_noisy). If the library is
@@ -153,7 +160,7 @@ private:
     std::optional<Denoiser> denoiser_for(const shot::ShotRequest& request) {
         if (!request.denoises && !denoises_if_noisy(request)) return std::nullopt;
         try {
-            return std::optional<Denoiser>(std::in_place, words_.device, request.settings.threads);
+            return std::optional<Denoiser>(std::in_place, options_.device, request.settings.threads);
         } catch (const Error& error) {  // library missing, or not available for this device
             if (request.denoises) throw;
             why_no_denoiser_ = error.what();
@@ -165,156 +172,169 @@ private:
     bool denoises_if_noisy(const shot::ShotRequest& request) const {
         return request.sampling == shot::Sampling::unsaid && !request.denoises && !request.keeps_noise &&
                !request.settings.layers.has_any(kHalfLayers) &&
-               !std::all_of(words_.outputs.begin(), words_.outputs.end(), is_exr);
+               !std::all_of(options_.outputs.begin(), options_.outputs.end(), is_exr);
     }
 
+    /// Prints a warning, and stores it for the JSON report.
     void warn(const std::string& text) {
-        say("warning: " + text);
+        print_message("warning: " + text);
         warnings_.push_back(io::one_line(text));
     }
 
+    /// Prints a message, unless --quiet is set.
     void inform(const std::string& text) const {
-        if (!words_.is_quiet) say(text);
+        if (!options_.is_quiet) print_message(text);
     }
 
+    /// Reads the scene and places the camera; informs about a view or daylight that the user did not specify.
     shot::Shot set_up_shot(const shot::ShotRequest& request, Camera camera) {
         shot::Shot shot = set_up(request, std::move(camera), read_scene(request));
         if (const std::string notice = shot::view_notice(shot); !notice.empty()) inform(notice);
         if (shot.has_daylight)
             inform(
-                "the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
+                "the scene has no light; daylight is added: a sun of 80 klux from the upper left, and a sky of 5000 "
                 "cd/m^2");
         return shot;
     }
 
-    /// Makes the decisions left to the planner, for the frames of a film or, without frames, for a picture. Returns a
-    /// one-line summary.
-    std::string settle(Session& session, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
+    /// Plans the camera model and effects that the request leaves to the planner, and sets them in `shot` and
+    /// `request`. `frames`: frame numbers of a video, or empty for a single picture. Returns a one-line summary of the
+    /// plan; empty if nothing was left to the planner.
+    std::string resolve_plan(Session& session, shot::Shot& shot, shot::ShotRequest& request,
+                             const std::vector<int>& frames) {
         if (!request.settings.needs_plan()) return "";
         const std::vector<Camera> cameras =
             frames.empty() ? std::vector{shot.camera} : cameras_to_plan(shot, request, frames);
-        ResolvedFilm film = until_interrupted([&] {
-            ProgressBar planning("planning ", !words_.is_quiet);
+        ResolvedFilm plan = until_interrupted([&] {
+            ProgressBar planning("planning ", !options_.is_quiet);
             return resolve_film(session, shot.scene, cameras, request.settings, fast_pupil_tracer(), [&](double) {
                 planning.show_seconds();
-                return is_wanted();
+                return is_not_interrupted();
             });
         });
-        shot.camera.model = film.model;
-        request.settings = std::move(film.settings);
-        if (!film.warning.empty()) warn(film.warning);
-        if (words_.explains && !words_.as_json && !words_.is_quiet)
-            for (const Plan& plan : film.plans)
-                std::fputs((text_of(plan, io::name_of(plan.model)) + '\n').c_str(), stdout);
-        return film.summary;
+        shot.camera.model = plan.model;
+        request.settings = std::move(plan.settings);
+        if (!plan.warning.empty()) warn(plan.warning);
+        if (options_.explains && !options_.as_json && !options_.is_quiet)
+            for (const Plan& part : plan.plans)
+                std::fputs((text_of(part, io::name_of(part.model)) + '\n').c_str(), stdout);
+        return plan.summary;
     }
 
+    /// Cameras of the frames from which the effects are planned (shot::frames_to_plan).
     std::vector<Camera> cameras_to_plan(const shot::Shot& shot, const shot::ShotRequest& request,
                                         const std::vector<int>& frames) const {
         std::vector<Camera> cameras;
-        for (const int frame : shot::frames_to_plan(frames, shot.camera, request.keys, words_.frames_per_second))
+        for (const int frame : shot::frames_to_plan(frames, shot.camera, request.keys, options_.frames_per_second))
             cameras.push_back(camera_of_frame(shot.camera, request, frame));
         return cameras;
     }
 
+    /// `camera` when the shutter of a frame opens, with its keys and shake.
     Camera camera_of_frame(const Camera& camera, const shot::ShotRequest& request, int frame) const {
         return shot::camera_at(camera, request.keys, request.shake,
-                               shot::frame_opens_s(camera, frame, words_.frames_per_second));
+                               shot::frame_opens_s(camera, frame, options_.frames_per_second));
     }
 
-    /// True if a file is a complete picture of the current frame, taken with the settings of this film.
-    bool is_done(const std::string& file) const {
-        return is_file(file) && until_interrupted([&] {
-                                    return image_io::entry_of_whole_file(file, "realcam:film", is_wanted);
-                                }) == frame_digest_;
+    /// True if the file is a complete picture of the current frame, taken with the current settings.
+    bool is_complete_frame(const std::string& file) const {
+        return is_file(file) &&
+               until_interrupted([&] {
+                   return image_io::entry_of_complete_picture(file, "realcam:film", is_not_interrupted);
+               }) == frame_digest_;
     }
 
-    /// Takes the frames of a film that are not done yet, and encodes its videos.
-    void film(const Darkroom& darkroom, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
-        const std::string decisions = settle(darkroom.session, shot, request, frames);
+    /// Takes all frames that are not complete yet (with --again, all frames), and encodes the videos.
+    void render_frames(const PictureTools& tools, shot::Shot& shot, shot::ShotRequest& request,
+                       const std::vector<int>& frames) {
+        const std::string plan_summary = resolve_plan(tools.session, shot, request, frames);
         const Camera camera = shot.camera;
-        // Checks all frames before the first is taken, so that a lens that cannot follow its keys is not reported at
-        // the last.
+        // Checks all frames before the first is taken, so that a lens that cannot follow its keys is reported at once.
         std::set<std::string> notices;
         for (const int frame : frames) {
-            const Camera taken_by = camera_of_frame(camera, request, frame);
-            validate_effects(request.settings, taken_by);
-            for (const std::string& notice : effect_notices(request.settings.effects, taken_by.lens))
+            const Camera frame_camera = camera_of_frame(camera, request, frame);
+            validate_effects(request.settings, frame_camera);
+            for (const std::string& notice : effect_notices(request.settings.effects, frame_camera.lens))
                 if (notices.insert(notice).second) warn(notice);
         }
-        outputs_.begin();
+        outputs_.create_frame_folders();
         const std::uint32_t seed = request.settings.seed;
-        std::optional<shot::FollowedIso> followed;
+        std::optional<shot::FollowedIso> auto_iso;
         if (request.iso_follows_s)
-            followed.emplace(darkroom.session, shot.scene, camera, request.keys, request.settings,
-                             words_.frames_per_second, *request.iso_follows_s);
-        std::size_t there = 0, unfit = 0;
-        std::string all_figures;
+            auto_iso.emplace(tools.session, shot.scene, camera, request.keys, request.settings,
+                             options_.frames_per_second, *request.iso_follows_s);
+        std::size_t complete = 0, outdated = 0;
+        std::string all_reports;
         for (const int frame : frames) {
             const std::vector<std::string> files = outputs_.files_of(frame);
-            frame_digest_ = film_digest_ + '-' + std::to_string(frame);
-            if (!words_.takes_again) {
-                if (std::all_of(files.begin(), files.end(), [&](const auto& file) { return is_done(file); })) {
-                    ++there;
+            frame_digest_ = settings_digest_ + '-' + std::to_string(frame);
+            if (!options_.retakes_frames) {
+                if (std::all_of(files.begin(), files.end(),
+                                [&](const auto& file) { return is_complete_frame(file); })) {
+                    ++complete;
                     continue;
                 }
-                unfit += std::any_of(files.begin(), files.end(), is_file);
+                outdated += std::any_of(files.begin(), files.end(), is_file);
             }
             start_ = std::chrono::steady_clock::now();
             shot.camera = camera_of_frame(camera, request, frame);
-            if (followed)
+            if (auto_iso)
                 shot.camera.iso =
-                    until_interrupted([&] { return followed->at(frame, [](double) { return is_wanted(); }); });
+                    until_interrupted([&] { return auto_iso->at(frame, [](double) { return is_not_interrupted(); }); });
             request.settings.seed = shot::frame_seed(seed, frame);
-            const std::string figures = take(darkroom, shot, request, decisions, files);
-            if (words_.as_json)
-                all_figures += (all_figures.empty() ? "" : ",\n") + figures;
-            else if (!words_.is_quiet)
+            const std::string report = take_and_write(tools, shot, request, plan_summary, files);
+            if (options_.as_json)
+                all_reports += (all_reports.empty() ? "" : ",\n") + report;
+            else if (!options_.is_quiet)
                 std::fputs(frame_summary(frame, shot.camera, files).c_str(), stdout);
         }
-        if (words_.as_json) std::fputs(("[\n" + all_figures + "]\n").c_str(), stdout);
-        if (there > 0)
-            inform(std::to_string(there) + " of " + std::to_string(frames.size()) +
-                   " frames were there already; --again takes them, too");
-        if (unfit > 0)
-            inform(std::to_string(unfit) + " of " + std::to_string(frames.size()) +
-                   " frames were there, but damaged or taken with other settings, and were taken again");
-        const auto films =
-            until_interrupted([&] { return outputs_.finish(frames, words_.frames_per_second, is_wanted); });
-        for (const std::string& film : films)
-            if (!words_.is_quiet && !words_.as_json) std::fputs(("wrote " + film + '\n').c_str(), stdout);
+        if (options_.as_json) std::fputs(("[\n" + all_reports + "]\n").c_str(), stdout);
+        if (complete > 0)
+            inform(std::to_string(complete) + " of " + std::to_string(frames.size()) +
+                   " frames exist already; --again takes them again");
+        if (outdated > 0)
+            inform(std::to_string(outdated) + " of " + std::to_string(frames.size()) +
+                   " frames existed, but were damaged or taken with other settings, and were taken again");
+        const auto videos = until_interrupted(
+            [&] { return outputs_.encode_videos(frames, options_.frames_per_second, is_not_interrupted); });
+        for (const std::string& video : videos)
+            if (!options_.is_quiet && !options_.as_json) std::fputs(("wrote " + video + '\n').c_str(), stdout);
     }
 
-    /// Takes and writes a picture; returns its figures. `finishes`: returns true if a picture that a signal has stopped
-    /// is still to be written; empty: such a picture is discarded.
-    std::string take(const Darkroom& darkroom, const shot::Shot& shot, const shot::ShotRequest& request,
-                     const std::string& decisions, const std::vector<std::string>& files,
-                     const KeepGoing& finishes = {}) {
-        const KeepGoing& goes_on = finishes ? finishes : KeepGoing(is_wanted);
-        Image image = expose(darkroom.session, shot, request, finishes);
+    /// Takes a picture, denoises it if requested, and writes it to `files`. Returns the report that the command prints,
+    /// as text or JSON. `keep_partial`: returns true if a picture that a signal has stopped is to be written with the
+    /// samples taken until then; empty: such a picture is discarded.
+    std::string take_and_write(const PictureTools& tools, const shot::Shot& shot, const shot::ShotRequest& request,
+                               const std::string& plan_summary, const std::vector<std::string>& files,
+                               const KeepGoing& keep_partial = {}) {
+        const KeepGoing& keep_going = keep_partial ? keep_partial : KeepGoing(is_not_interrupted);
+        Image image = expose(tools.session, shot, request, keep_partial);
         if (!image.shortfall.empty()) warn(image.shortfall);
         const bool is_noisy = !image.shortfall.empty() && denoises_if_noisy(request);
         std::optional<Image> denoised;
         std::string denoiser_name;
-        if (darkroom.denoiser && (request.denoises || is_noisy)) {
+        if (tools.denoiser && (request.denoises || is_noisy)) {
             denoised = image;
-            denoiser_name = darkroom.denoiser->name();
-            until_interrupted([&] { denoise(*denoised, darkroom.written_layers, *darkroom.denoiser, goes_on); });
+            denoiser_name = tools.denoiser->name();
+            until_interrupted([&] { denoise(*denoised, tools.written_layers, *tools.denoiser, keep_going); });
         }
-        keep_layers(image, darkroom.written_layers);
+        keep_layers(image, tools.written_layers);
         if (is_noisy)
             inform(denoised ? "the remaining noise was removed by " + denoiser_name +
                                   ", except from .exr; --no-denoise keeps it"
                             : "the remaining noise stays: " + why_no_denoiser_);
-        const Image& shown = denoised ? *denoised : image;
-        if (const std::string notice = exposure_notice(shown, shot.camera, request.tone); !notice.empty()) warn(notice);
-        write(request.denoises ? shown : image, shown, shot, request, decisions, denoiser_name, files, goes_on);
+        const Image& for_screen = denoised ? *denoised : image;
+        if (const std::string notice = exposure_notice(for_screen, shot.camera, request.tone); !notice.empty())
+            warn(notice);
+        write(request.denoises ? for_screen : image, for_screen, shot, request, plan_summary, denoiser_name, files,
+              keep_going);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        return words_.as_json
-                   ? render_as_json(shot, request, image, files, decisions, denoiser_name, warnings_, seconds)
-                   : summary(shot, request.settings, image, files, denoiser_name, seconds, words_.verbose);
+        return options_.as_json
+                   ? render_as_json(shot, request, image, files, plan_summary, denoiser_name, warnings_, seconds)
+                   : summary(shot, request.settings, image, files, denoiser_name, seconds, options_.verbose);
     }
 
+    /// Reads the scene file and its textures, and prints the first ten of its warnings.
     Assembly read_scene(const shot::ShotRequest& request) {
         const shot::PictureReaders readers = {
             [](const std::string& path, std::span<const std::uint8_t> bytes) {
@@ -327,62 +347,67 @@ private:
             with_memory_for("while reading " + request.scene, [&] { return shot::scene_of(request, readers); });
         inputs_.end();
         const std::vector<std::string>& warnings = scene.static_geometry->warnings;
-        constexpr std::size_t kShown = 10;
-        for (std::size_t i = 0; i < std::min(kShown, warnings.size()); ++i) warn(warnings[i]);
-        if (warnings.size() > kShown) say("and " + std::to_string(warnings.size() - kShown) + " more warnings");
+        constexpr std::size_t kMaxPrinted = 10;
+        for (std::size_t i = 0; i < std::min(kMaxPrinted, warnings.size()); ++i) warn(warnings[i]);
+        if (warnings.size() > kMaxPrinted)
+            print_message("and " + std::to_string(warnings.size() - kMaxPrinted) + " more warnings");
         return scene;
     }
 
     void meter_exposure(Session& session, shot::Shot& shot, const shot::ShotRequest& request) const {
         until_interrupted([&] {
-            ProgressBar metering("metering ", !words_.is_quiet);
+            ProgressBar metering("metering ", !options_.is_quiet);
             meter(shot, request, session, [&](double done) {
                 metering.show(done);
-                return is_wanted();
+                return is_not_interrupted();
             });
         });
     }
 
+    /// Renders the picture, with a progress bar. See take_and_write for `keep_partial`.
     Image expose(Session& session, const shot::Shot& shot, const shot::ShotRequest& request,
-                 const KeepGoing& finishes) const {
+                 const KeepGoing& keep_partial) const {
         const Film& film = shot.camera.film;
         return until_interrupted([&] {
-            ProgressBar rendering("rendering", !words_.is_quiet);
+            ProgressBar rendering("rendering", !options_.is_quiet);
             std::optional<SamplingNotice> notice;
-            if (request.settings.noise) inform(notice.emplace(*request.settings.noise, request.sampling).aim());
+            if (request.settings.noise) inform(notice.emplace(*request.settings.noise, request.sampling).goal_text());
             const auto show_rendering = [&](double done) {
                 if (notice) {
-                    done = notice->took(done);
-                    if (const std::string text = notice->expectation(); !text.empty()) {
+                    done = notice->update(done);
+                    if (const std::string text = notice->duration_notice(); !text.empty()) {
                         rendering.clear();
                         inform(text);
                     }
                 }
                 rendering.show(done);
-                return is_wanted();
+                return is_not_interrupted();
             };
             return with_memory_for(
                 "for a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels",
                 [&] {
-                    return take_picture(session, shot.scene, shot.camera, request.settings, show_rendering, finishes);
+                    return take_picture(session, shot.scene, shot.camera, request.settings, show_rendering,
+                                        keep_partial);
                 });
         });
     }
 
-    /// `raw`: written to .exr; `shown`: to other files.
-    void write(const Image& raw, const Image& shown, const shot::Shot& shot, const shot::ShotRequest& request,
-               const std::string& decisions, const std::string& denoiser, const std::vector<std::string>& files,
-               const KeepGoing& goes_on) const {
+    /// Writes the files. `raw`: picture for .exr files; `for_screen`: picture for other files, perhaps denoised.
+    /// `plan_summary` and `denoiser` go into the files' metadata. Throws ImageFileError, and Interrupted that names the
+    /// files written before.
+    void write(const Image& raw, const Image& for_screen, const shot::Shot& shot, const shot::ShotRequest& request,
+               const std::string& plan_summary, const std::string& denoiser, const std::vector<std::string>& files,
+               const KeepGoing& keep_going) const {
         io::ImageMetadata metadata = io::metadata_of(shot.camera, request.settings);
-        metadata.plan = decisions;
+        metadata.plan = plan_summary;
         metadata.film = frame_digest_;
         metadata.spp = static_cast<int>(raw.spp);
         std::string written;
         for (const std::string& path : files) {
-            const Image& image = is_exr(path) ? raw : shown;
+            const Image& image = is_exr(path) ? raw : for_screen;
             metadata.denoiser = !is_exr(path) || request.denoises ? denoiser : "";
             try {
-                image_io::write_image(image_io::view_of(image), path, metadata, request.tone, goes_on);
+                image_io::write_image(image_io::view_of(image), path, metadata, request.tone, keep_going);
             } catch (const Cancelled&) {
                 throw Interrupted{Interrupt::signal(), written.empty() ? "" : "; written before: " + written};
             }
@@ -390,47 +415,48 @@ private:
         }
     }
 
-    const RenderWords& words_;
-    FilmOutputs outputs_;
+    const RenderOptions& options_;
+    OutputFiles outputs_;
     std::chrono::steady_clock::time_point start_;
-    std::vector<std::string> warnings_;  ///< already printed
-    std::string why_no_denoiser_;
-    io::InputRecording inputs_;
-    std::string film_digest_, frame_digest_;  ///< empty for a still
+    std::vector<std::string> warnings_;  ///< printed so far, for the JSON report
+    std::string why_no_denoiser_;  ///< reason why the default denoiser is not available; empty if it is
+    io::InputRecording inputs_;  ///< records the files that are read, for settings_digest
+    /// Digest of the settings, and the same with the current frame's number; empty for a single picture.
+    std::string settings_digest_, frame_digest_;
 };
 
 }  // namespace
 
-void add_render_command(CLI::App& app, const FilmWriter* film_writer) {
+void add_render_command(CLI::App& app, const FilmWriter* video_writer) {
     CLI::App* command = app.add_subcommand("render", "Photograph a scene through a lens.");
-    const auto words = std::make_shared<RenderWords>();
-    add_render_options(*command, *words);
+    const auto options = std::make_shared<RenderOptions>();
+    add_render_options(*command, *options);
     set_examples(
         *command,
         {
             "realcam render scene.glb -o picture.png",
-            "realcam render scene.glb -o picture.png -o film.exr --lens tessar-50mm --f-number 5.6 --focus 2.5",
+            "realcam render scene.glb -o picture.png -o exposure.exr --lens tessar-50mm --f-number 5.6 --focus 2.5",
             "realcam render scene.obj -o picture.png --position 0,1.5,4 --look-at 0,1,0 "
             "--exposure-time 1/125 --iso 400",
             "realcam render shot.toml -o picture.png --noise-codes 1 --seconds 300 --json",
             "realcam render shot.toml -o picture.png --spp 16 --denoise",
             "realcam render shot.toml -o frames/shot.####.exr --frames 1-240",
-            "realcam render shot.toml -o film.mp4 --frames 1-240 --fps 30",
+            "realcam render shot.toml -o video.mp4 --frames 1-240 --fps 30",
         });
-    command->callback([words, film_writer] { Run{*words, film_writer}.photograph(); });
+    command->callback([options, video_writer] { Run{*options, video_writer}.render_shot(); });
 }
 
 void add_plan_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("plan", "Say which effects a shot calls for, and why.");
-    const auto words = std::make_shared<RenderWords>();
+    CLI::App* command = app.add_subcommand("plan", "Print which effects a shot calls for, and why.");
+    const auto options = std::make_shared<RenderOptions>();
     const auto as_json = std::make_shared<bool>(false);
-    add_shot_options(*command, *words);
+    add_shot_options(*command, *options);
     command->add_flag("--json", *as_json, "Print JSON");
     set_examples(*command, {
                                "realcam plan shot.toml",
                                "realcam plan scene.glb --lens tessar-50mm --f-number 16 --quality draft --json",
                            });
-    command->callback([=] { Run(*words, nullptr).plan(*as_json); });
+    command->callback([=] { Run(*options, nullptr).plan(*as_json); });
 }
 
 }  // namespace realcam::app

@@ -6,15 +6,16 @@ namespace realcam::app {
 
 class FilmWriter;
 
-/// Adds `render`, which throws Interrupted if a signal stopped it. `film_writer`: null if this program writes no
+/// Adds `render`, which throws Interrupted if a signal stopped it. `video_writer`: null if this program writes no
 /// videos; the pointer is kept.
-void add_render_command(CLI::App& app, const FilmWriter* film_writer);
+void add_render_command(CLI::App& app, const FilmWriter* video_writer);
 /// Adds `plan`, which plans a shot without rendering it.
 void add_plan_command(CLI::App& app);
 
+/// Thrown by the callback of `render` after Ctrl-C or SIGTERM.
 struct Interrupted {
-    int signal;
-    std::string remark;  ///< work done before the signal; printed after "stopped"
+    int signal;  ///< number of the signal: SIGINT or SIGTERM
+    std::string remark;  ///< names the files written before the signal; printed after "stopped"
 };
 
 }  // namespace realcam::app

@@ -61,7 +61,7 @@ void write_settings(JsonWriter& json, const shot::ShotRequest& request, const st
     json.key("illuminant").text(light ? light->text() : "").key("plan").text(plan);
 }
 
-/// The noise goal; null if the number of samples was specified instead.
+/// Writes the noise goal; null if the number of samples was specified instead.
 void write_noise(JsonWriter& json, const std::optional<NoiseGoal>& goal, const Image& image) {
     if (!goal) {
         json.key("noise").null();

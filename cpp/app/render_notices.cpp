@@ -20,8 +20,8 @@ std::string percent(double part, double whole) {
     return text;
 }
 
-/// A rate in millions per second: "12.3 M".
-std::string million(double count, double seconds) {
+/// Formats the rate count / seconds in millions: "12.3 M".
+std::string millions_per_second(double count, double seconds) {
     char text[32];
     std::snprintf(text, sizeof text, "%.1f M", seconds > 0 ? 1e-6 * count / seconds : 0.0);
     return text;
@@ -67,13 +67,13 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
     if (verbose) {
         const double busy = stats.lens_seconds + stats.scene_seconds + stats.other_seconds;
         const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
-        line("lens rays", million(count(stats.sampled_rays), stats.seconds) + "/s; " +
-                              million(count(stats.sampled_rays), stats.lens_seconds) + "/s a core while in the lens, " +
-                              percent(stats.lens_seconds, busy) + " of the time; " +
+        line("lens rays", millions_per_second(count(stats.sampled_rays), stats.seconds) + "/s; " +
+                              millions_per_second(count(stats.sampled_rays), stats.lens_seconds) +
+                              "/s a core while in the lens, " + percent(stats.lens_seconds, busy) + " of the time; " +
                               percent(count(stats.passed_rays), count(stats.sampled_rays)) +
                               " of the sampled rays pass");
-        line("scene rays", million(count(stats.scene_rays), stats.seconds) + "/s; " +
-                               million(count(stats.scene_rays), stats.scene_seconds) +
+        line("scene rays", millions_per_second(count(stats.scene_rays), stats.seconds) + "/s; " +
+                               millions_per_second(count(stats.scene_rays), stats.scene_seconds) +
                                "/s a core while in the scene, " + percent(stats.scene_seconds, busy) + " of the time");
     }
     line("time", number_text(seconds, 3) + " s" +
@@ -97,26 +97,29 @@ std::string frame_summary(int frame, const Camera& camera, const std::vector<std
 
 namespace {
 
-constexpr double kNearlyAll = 0.75;  // fraction of the pixels
-// 8-bit luminance codes: values below kBlack are two stops or more below middle grey; from kWhite on, hardly any tonal
-// detail is left.
-constexpr int kBlack = 64, kWhite = 235;
-constexpr double kOffBy_stops = 3;  // night scenes are meant to be darker than middle grey, and snow brighter
+/// Least fraction of the pixels that must be black, or white, for a notice.
+constexpr double kMinFraction = 0.75;
+// 8-bit luminance codes: values below kBlackCode are two stops or more below middle grey; from kWhiteCode on, hardly
+// any tonal detail is left.
+constexpr int kBlackCode = 64, kWhiteCode = 235;
+/// Least error of the exposure for a notice. Smaller errors may be intended: night scenes are darker than middle grey,
+/// and snow is brighter.
+constexpr double kMinError_stops = 3;
 
 /// Fractions of the pixels that are black and white.
-struct Ends {
+struct ExtremeFractions {
     double black = 0, white = 0;
 };
 
-Ends ends_of(const Image& image, double iso, ToneCurve tone) {
+ExtremeFractions extreme_fractions(const Image& image, double iso, ToneCurve tone) {
     const CodeTable code(iso, tone);
     std::size_t black = 0, white = 0;
     const std::size_t count = image.exposure.size() / 3;
     for (std::size_t i = 0; i < count; ++i) {
         const float* rgb = &image.exposure[3 * i];
         const int grey = code(0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]);
-        black += grey < kBlack;
-        white += grey >= kWhite;
+        black += grey < kBlackCode;
+        white += grey >= kWhiteCode;
     }
     const auto pixels = static_cast<double>(std::max<std::size_t>(count, 1));
     return {static_cast<double>(black) / pixels, static_cast<double>(white) / pixels};
@@ -132,9 +135,9 @@ double stops_above_grey(const Image& image, double iso) {
 std::string exposure_notice(const Image& image, const Camera& camera, ToneCurve tone) {
     const double stops = stops_above_grey(image, camera.iso);
     if (std::isinf(stops)) return "the picture is black: no light reaches the film";
-    const Ends ends = ends_of(image, camera.iso, tone);
-    const bool is_dark = stops < -kOffBy_stops && ends.black >= kNearlyAll;
-    const bool is_bright = stops > kOffBy_stops && ends.white >= kNearlyAll;
+    const ExtremeFractions extremes = extreme_fractions(image, camera.iso, tone);
+    const bool is_dark = stops < -kMinError_stops && extremes.black >= kMinFraction;
+    const bool is_bright = stops > kMinError_stops && extremes.white >= kMinFraction;
     if (!is_dark && !is_bright) return "";
     const std::string time = exposure_text(camera.exposure_time_s / std::exp2(stops));
     const std::string head = std::string("the picture is nearly all ") + (is_dark ? "black" : "white") + ", " +
@@ -154,34 +157,34 @@ std::string duration_text(double seconds) {
 }
 
 /// Shorter durations are not announced.
-constexpr double kLong_s = 3;
+constexpr double kMinAnnounced_s = 3;
 
 }  // namespace
 
-std::string SamplingNotice::aim() const {
+std::string SamplingNotice::goal_text() const {
     const bool is_in_codes = goal_.unit == NoiseUnit::codes;
     std::string text =
         "samples are taken until the noise is " +
         (is_in_codes ? counted(goal_.noise, "code") + " of 255" : number_text(100 * goal_.noise) + "% of the light");
     if (std::isfinite(goal_.seconds)) text += ", for " + number_text(goal_.seconds) + " s at most";
-    if (sampling_ == shot::Sampling::unsaid) text += "; --noise-codes, --seconds or --spp say otherwise";
+    if (sampling_ == shot::Sampling::unsaid) text += "; --noise-codes, --seconds or --spp change this";
     return text;
 }
 
-double SamplingNotice::took(double share) {
-    share_ = share;
+double SamplingNotice::update(double fraction) {
+    fraction_ = fraction;
     elapsed_s_ = std::chrono::duration<double>(Clock::now() - start_).count();
-    return std::min(1.0, std::max(share, elapsed_s_ / goal_.seconds));
+    return std::min(1.0, std::max(fraction, elapsed_s_ / goal_.seconds));
 }
 
-std::string SamplingNotice::expectation() {
-    if (has_reported_ || !(share_ > 0) || share_ >= 1) return "";
+std::string SamplingNotice::duration_notice() {
+    if (has_reported_ || !(fraction_ > 0) || fraction_ >= 1) return "";
     has_reported_ = true;
-    const double all_s = elapsed_s_ / share_;
-    if (all_s < kLong_s) return "";
-    const std::string all = "about " + duration_text(all_s);
-    if (all_s <= goal_.seconds) return "that is expected to take " + all;
-    return "that would take " + all + "; the picture ends after " + duration_text(goal_.seconds);
+    const double expected_s = elapsed_s_ / fraction_;
+    if (expected_s < kMinAnnounced_s) return "";
+    const std::string duration = "about " + duration_text(expected_s);
+    if (expected_s <= goal_.seconds) return "that is expected to take " + duration;
+    return "that would take " + duration + "; the picture ends after " + duration_text(goal_.seconds);
 }
 
 }  // namespace realcam::app

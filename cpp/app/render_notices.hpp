@@ -11,21 +11,21 @@
 
 namespace realcam::app {
 
-/// Messages about the expected duration of a picture with a noise goal.
+/// Messages about the noise goal of a picture and the time expected to reach it.
 class SamplingNotice {
 public:
     SamplingNotice(const NoiseGoal& goal, shot::Sampling sampling) : goal_(goal), sampling_(sampling) {}
 
     /// The noise goal and the time limit, in a line.
-    std::string aim() const;
+    std::string goal_text() const;
 
-    /// Records that a fraction of the samples is taken, from 0 to 1. Returns the fraction done: the larger of `share`
-    /// and the elapsed fraction of the time limit.
-    double took(double share);
+    /// Records the fraction of the samples that has been taken, 0 to 1, and the time. Returns the progress to display,
+    /// 0 to 1: the larger of `fraction` and the elapsed fraction of the time limit.
+    double update(double fraction);
 
-    /// The expected duration, in a line, the first time it can be estimated. Empty at other times and for short
-    /// durations.
-    std::string expectation();
+    /// Returns the expected duration, in a line, at the first call at which it can be estimated; empty at other calls
+    /// and for durations below 3 s.
+    std::string duration_notice();
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -33,7 +33,7 @@ private:
     NoiseGoal goal_;
     shot::Sampling sampling_;
     Clock::time_point start_ = Clock::now();
-    double elapsed_s_ = 0, share_ = 0;
+    double elapsed_s_ = 0, fraction_ = 0;
     bool has_reported_ = false;
 };
 
@@ -44,13 +44,14 @@ double stops_above_grey(const Image& image, double iso);
 /// settings to change. Empty for any other picture.
 std::string exposure_notice(const Image& image, const Camera& camera, ToneCurve tone);
 
-/// Summary of a picture and its cost, in some lines. `seconds`: wall-clock time of the whole command. `verbose`: adds
-/// rays per second, and the time by stage. `denoiser`: its name, empty if the picture was not denoised.
+/// Summary of a picture and its cost, in some lines. `pictures`: files that were written. `denoiser`: its name, empty
+/// if the picture was not denoised. `seconds`: wall-clock time of the whole command. `verbose`: adds rays per second,
+/// and the time by stage.
 std::string summary(const shot::Shot& shot, const RenderSettings& settings, const Image& image,
                     const std::vector<std::string>& pictures, const std::string& denoiser, double seconds,
                     bool verbose);
 
-/// One-line summary of a frame of a film.
+/// One-line summary of a frame of a video: its number, the state of the camera, and the files that were written.
 std::string frame_summary(int frame, const Camera& camera, const std::vector<std::string>& pictures);
 
 }  // namespace realcam::app

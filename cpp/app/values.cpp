@@ -6,6 +6,7 @@
 #include "../io/text/text_number.hpp"
 
 namespace realcam::app {
+
 double parse_number(const std::string& option, const std::string& text) {
     const auto value = io::number_in(text);
     if (!value || std::isinf(*value)) throw InputError(option + ": \"" + text + "\" is not a number");
@@ -24,9 +25,10 @@ std::string distance_text(double metres) {
 
 std::string exposure_text(double seconds) {
     const double inverse = 1 / seconds;
-    if (inverse < 2.5) return number_text(seconds) + " s";
-    constexpr double kMostInFull = 1e6;  // larger denominators are not written out: no shutter is faster
-    const bool in_full = inverse >= 10 && inverse <= kMostInFull;
+    constexpr double kMinDenominator = 2.5;  // longer times are not written as fractions
+    if (inverse < kMinDenominator) return number_text(seconds) + " s";
+    constexpr double kMaxInFull = 1e6;  // larger denominators get two significant digits: no shutter is faster
+    const bool in_full = inverse >= 10 && inverse <= kMaxInFull;
     return "1/" + (in_full ? std::to_string(std::llround(inverse)) : number_text(inverse, 2)) + " s";
 }
 

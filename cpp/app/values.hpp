@@ -5,9 +5,9 @@
 
 namespace realcam::app {
 
-/// Parses a number such as "1.5". Throws InputError that names the option.
+/// Parses the value `text` of an option as a finite number such as "1.5". Throws InputError that names the option.
 double parse_number(const std::string& option, const std::string& text);
-/// Parses metres such as "2.5", or "inf". Throws InputError that names the option.
+/// Parses the value `text` of an option as metres such as "2.5", or "inf". Throws InputError that names the option.
 double parse_distance(const std::string& option, const std::string& text);
 
 /// Formats a distance: "2.5 m", "infinity".

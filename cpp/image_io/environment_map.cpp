@@ -15,19 +15,20 @@ class CubeMap {
 public:
     explicit CubeMap(const Environment& file) : file_(file), size_(file.width) {}
 
+    /// Radiance from a direction, which need not have unit length.
     Color in_direction(Vec3d d) const {
         const double x = std::abs(d.x), y = std::abs(d.y), z = std::abs(d.z);
-        if (x >= y && x >= z) return d.x > 0 ? in_square(0, d.z / x, d.y / x) : in_square(1, -d.z / x, d.y / x);
-        if (y >= z) return d.y > 0 ? in_square(2, d.x / y, d.z / y) : in_square(3, d.x / y, -d.z / y);
-        return d.z > 0 ? in_square(4, -d.x / z, d.y / z) : in_square(5, d.x / z, d.y / z);
+        if (x >= y && x >= z) return d.x > 0 ? in_face(0, d.z / x, d.y / x) : in_face(1, -d.z / x, d.y / x);
+        if (y >= z) return d.y > 0 ? in_face(2, d.x / y, d.z / y) : in_face(3, d.x / y, -d.z / y);
+        return d.z > 0 ? in_face(4, -d.x / z, d.y / z) : in_face(5, d.x / z, d.y / z);
     }
 
 private:
-    /// Interpolates bilinearly in a face; `right`, `up`: -1 to 1.
-    Color in_square(int number, double right, double up) const {
-        const double last = size_ - 1;
-        const double column = std::clamp(0.5 * (right + 1) * last, 0.0, last),
-                     row = std::clamp(0.5 * (1 - up) * last, 0.0, last);
+    /// Interpolates bilinearly in face `number`. `right`, `up`: position in the face, from -1 to 1.
+    Color in_face(int number, double right, double up) const {
+        const double max_index = size_ - 1;
+        const double column = std::clamp(0.5 * (right + 1) * max_index, 0.0, max_index),
+                     row = std::clamp(0.5 * (1 - up) * max_index, 0.0, max_index);
         const int left = std::min(static_cast<int>(column), std::max(size_ - 2, 0)),
                   top = std::min(static_cast<int>(row), std::max(size_ - 2, 0));
         const int next = size_ > 1 ? 1 : 0;
@@ -43,14 +44,14 @@ private:
     }
 
     const Environment& file_;
-    int size_;
+    int size_;  // pixels along an edge of a face
 };
 
 /// Resamples a cube map to a latitude-longitude picture, with four samples per pixel, and about as many pixels along
 /// the horizon as the cube has.
-Environment of_cube(const Environment& file, const KeepGoing& keep_going) {
+Environment lat_long_of_cube(const Environment& file, const KeepGoing& keep_going) {
     if (file.height != 6 * std::int64_t{file.width})
-        throw Error("says that it is a cube map, and has " + std::to_string(file.width) + " x " +
+        throw Error("is declared to be a cube map, and has " + std::to_string(file.width) + " x " +
                     std::to_string(file.height) + " pixels; expected six squares below each other");
     const CubeMap cube(file);
     Environment out;
@@ -77,7 +78,7 @@ Environment of_cube(const Environment& file, const KeepGoing& keep_going) {
 }  // namespace
 
 Environment environment_of(EnvironmentMap map, Environment file, const KeepGoing& keep_going) {
-    if (map == EnvironmentMap::cube) return of_cube(file, keep_going);
+    if (map == EnvironmentMap::cube) return lat_long_of_cube(file, keep_going);
     if (map == EnvironmentMap::lat_long)
         for (int row = 0; row < file.height; ++row) {
             const auto begin = file.pixels.begin() + std::ptrdiff_t{row} * file.width;

@@ -12,11 +12,11 @@ namespace realcam::image_io {
 namespace {
 
 /// Names, in lower case, of the layer with the complete light: the part's name, or the component after the last dot.
-constexpr std::string_view kBeauty[] = {"beauty", "combined", "rgba", "rgb", "color", "colour", "main", "final"};
+constexpr std::string_view kBeautyNames[] = {"beauty", "combined", "rgba", "rgb", "color", "colour", "main", "final"};
 
 /// Lower-case channel names of red, green and blue, or of X, Y and Z.
-constexpr std::array<std::string_view, 3> kColours[] = {{"r", "g", "b"}, {"red", "green", "blue"}, {"x", "y", "z"}};
-constexpr std::size_t kTristimulus = 2;
+constexpr std::array<std::string_view, 3> kColourNames[] = {{"r", "g", "b"}, {"red", "green", "blue"}, {"x", "y", "z"}};
+constexpr std::size_t kTristimulus = 2;  // index of X, Y and Z in kColourNames
 
 std::string lower(std::string text) {
     std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -27,24 +27,28 @@ std::string last_component(const std::string& name) {
     return name.substr(name.rfind('.') + 1);  // npos + 1 is 0
 }
 
-struct Layer {
-    std::string name;  // empty: channels without a prefix in a file of one part
-    std::size_t part;
-    std::vector<std::pair<std::string, int>> channels = {};  // names in lower case without the prefix
+/// Layer of an OpenEXR file: the channels of one prefix in one part.
+struct FileLayer {
+    std::string name;  // part name and prefix; empty: channels without a prefix in a file of one part
+    std::size_t part;  // index
+    std::vector<std::pair<std::string, int>> channels =
+        {};  // names in lower case without the prefix, and indices in the part
     bool has_whole_numbers = false;
 
+    /// Index of a channel in its part; -1 if the layer does not have it.
     int find(std::string_view channel) const {
         for (const auto& [name, index] : channels)
             if (name == channel) return index;
         return -1;
     }
+    /// Index of the alpha channel; -1 if there is none.
     int alpha() const { return std::max(find("a"), find("alpha")); }
 
-    /// Returns the channels of red, green and blue, or an empty list. X, Y and Z are tristimulus values only without a
-    /// prefix: with a prefix they are vectors.
+    /// Returns the channels of red, green and blue, or of X, Y and Z; an empty list if there are none. Channels X, Y
+    /// and Z with a prefix are not tristimulus values but vectors.
     std::vector<int> colours() const {
-        for (const auto& names : kColours) {
-            if (&names == &kColours[kTristimulus] && !name.empty()) continue;
+        for (const auto& names : kColourNames) {
+            if (&names == &kColourNames[kTristimulus] && !name.empty()) continue;
             std::vector<int> found;
             for (const std::string_view colour : names) found.push_back(find(colour));
             if (std::ranges::find(found, -1) == found.end()) return found;
@@ -61,6 +65,7 @@ struct Layer {
         return others.size() == 1 ? others : std::vector<int>{};
     }
 
+    /// Returns the channels of ExrLayer; an empty list if the layer is not a picture.
     std::vector<int> picture() const {
         std::vector<int> found = colours().empty() ? grey() : colours();
         if (!found.empty() && alpha() >= 0) found.push_back(alpha());
@@ -69,8 +74,8 @@ struct Layer {
 };
 
 /// Returns the flat layers, in the order of the file.
-std::vector<Layer> layers_of(const std::vector<EncodedHeader>& parts) {
-    std::vector<Layer> layers;
+std::vector<FileLayer> layers_of(const std::vector<EncodedHeader>& parts) {
+    std::vector<FileLayer> layers;
     for (std::size_t p = 0; p < parts.size(); ++p) {
         if (parts[p].is_deep || parts[p].depth > 1) continue;
         const std::string part_name = parts.size() > 1 ? parts[p].part_name : "";
@@ -78,12 +83,13 @@ std::vector<Layer> layers_of(const std::vector<EncodedHeader>& parts) {
             const std::string& channel = parts[p].channel_names[c].name;
             const std::size_t dot = channel.rfind('.');
             std::string prefix = dot == std::string::npos ? "" : channel.substr(0, dot);
-            const bool repeats = prefix == part_name || prefix.starts_with(part_name + ".");
-            std::string name = prefix.empty()                 ? part_name
-                               : part_name.empty() || repeats ? prefix
-                                                              : part_name + "." + prefix;
-            auto layer = std::ranges::find_if(layers, [&](const Layer& l) { return l.part == p && l.name == name; });
-            if (layer == layers.end()) layer = layers.insert(layers.end(), Layer{std::move(name), p});
+            const bool includes_part_name = prefix == part_name || prefix.starts_with(part_name + ".");
+            std::string name = prefix.empty()                            ? part_name
+                               : part_name.empty() || includes_part_name ? prefix
+                                                                         : part_name + "." + prefix;
+            auto layer =
+                std::ranges::find_if(layers, [&](const FileLayer& l) { return l.part == p && l.name == name; });
+            if (layer == layers.end()) layer = layers.insert(layers.end(), FileLayer{std::move(name), p});
             layer->channels.emplace_back(lower(last_component(channel)), static_cast<int>(c));
             layer->has_whole_numbers |= parts[p].channel_names[c].is_number;
         }
@@ -91,43 +97,46 @@ std::vector<Layer> layers_of(const std::vector<EncodedHeader>& parts) {
     return layers;
 }
 
-std::string names_of(const std::vector<const Layer*>& layers) {
-    constexpr std::size_t kShown = 12;
+/// Lists the names of layers for a message.
+std::string names_of(const std::vector<const FileLayer*>& layers) {
+    constexpr std::size_t kMaxListed = 12;
     std::string out;
-    for (std::size_t i = 0; i < std::min(kShown, layers.size()); ++i)
+    for (std::size_t i = 0; i < std::min(kMaxListed, layers.size()); ++i)
         out += (i > 0 ? ", " : "") + (layers[i]->name.empty() ? "R, G and B" : io::in_quotes(layers[i]->name));
-    return out + (layers.size() > kShown ? " and " + std::to_string(layers.size() - kShown) + " more" : "");
+    return out + (layers.size() > kMaxListed ? " and " + std::to_string(layers.size() - kMaxListed) + " more" : "");
 }
 
+/// Returns the layers for which the predicate is true.
 template <class Predicate>
-std::vector<const Layer*> those(const std::vector<const Layer*>& layers, Predicate predicate) {
-    std::vector<const Layer*> out;
-    std::ranges::copy_if(layers, std::back_inserter(out), [&](const Layer* layer) { return predicate(*layer); });
+std::vector<const FileLayer*> filtered(const std::vector<const FileLayer*>& layers, Predicate predicate) {
+    std::vector<const FileLayer*> out;
+    std::ranges::copy_if(layers, std::back_inserter(out), [&](const FileLayer* layer) { return predicate(*layer); });
     return out;
 }
 
-bool is_beauty(const Layer& layer) {
-    return std::ranges::find(kBeauty, lower(last_component(layer.name))) != std::end(kBeauty);
+/// True if the layer has a name with which renderers denote the complete light.
+bool is_beauty(const FileLayer& layer) {
+    return std::ranges::find(kBeautyNames, lower(last_component(layer.name))) != std::end(kBeautyNames);
 }
 
-const Layer& chosen(const std::vector<const Layer*>& pictures, const std::string& wanted) {
-    if (!wanted.empty()) {
-        const auto named = those(pictures, [&](const Layer& l) { return lower(l.name) == lower(wanted); });
+/// Returns the layer to read among those that are pictures (see choose_layer). Throws Error.
+const FileLayer& select_layer(const std::vector<const FileLayer*>& pictures, const std::string& requested) {
+    if (!requested.empty()) {
+        const auto named = filtered(pictures, [&](const FileLayer& l) { return lower(l.name) == lower(requested); });
         if (named.size() == 1) return *named[0];
-        throw Error((named.empty() ? "has no layer " : "has several layers ") + io::in_quotes(wanted) +
+        throw Error((named.empty() ? "has no layer " : "has several layers ") + io::in_quotes(requested) +
                     "; its layers are " + names_of(pictures));
     }
-    // Cryptomatte stores hashes as red, green and blue.
-    const auto light = those(pictures, [](const Layer& l) {
+    // Cryptomatte layers are excluded: they store hashes as red, green and blue.
+    const auto light = filtered(pictures, [](const FileLayer& l) {
         return !lower(l.name).starts_with("crypto") && !lower(last_component(l.name)).starts_with("crypto");
     });
-    const auto coloured = those(light, [](const Layer& l) { return !l.colours().empty(); });
-    for (const auto& candidates : {those(coloured, [](const Layer& l) { return l.name.empty(); }),
-                                   those(coloured, is_beauty), coloured, those(light, is_beauty), light}) {
+    const auto coloured = filtered(light, [](const FileLayer& l) { return !l.colours().empty(); });
+    for (const auto& candidates : {filtered(coloured, [](const FileLayer& l) { return l.name.empty(); }),
+                                   filtered(coloured, is_beauty), coloured, filtered(light, is_beauty), light}) {
         if (candidates.size() == 1) return *candidates[0];
         if (candidates.size() > 1)
-            throw Error("has several layers: " + names_of(candidates) +
-                        "; the environment's layer is to be chosen among them (environment_layer)");
+            throw Error("has several layers: " + names_of(candidates) + "; choose one of them (environment_layer)");
     }
     throw Error("has no layer with R, G and B");
 }
@@ -135,17 +144,17 @@ const Layer& chosen(const std::vector<const Layer*>& pictures, const std::string
 }  // namespace
 
 ExrLayer choose_layer(const std::vector<EncodedHeader>& parts, const std::string& name) {
-    const std::vector<Layer> layers = layers_of(parts);
-    std::vector<const Layer*> pictures;
-    for (const Layer& layer : layers)
+    const std::vector<FileLayer> layers = layers_of(parts);
+    std::vector<const FileLayer*> pictures;
+    for (const FileLayer& layer : layers)
         if (!layer.picture().empty()) pictures.push_back(&layer);
     // Id layers have whole numbers and are ignored; if there are no others, the error message names the reason.
-    const auto light = those(pictures, [](const Layer& l) { return !l.has_whole_numbers; });
-    const Layer& layer = chosen(!name.empty() || light.empty() ? pictures : light, name);
+    const auto light = filtered(pictures, [](const FileLayer& l) { return !l.has_whole_numbers; });
+    const FileLayer& layer = select_layer(!name.empty() || light.empty() ? pictures : light, name);
     std::vector<int> channels = layer.picture();
     for (const int channel : channels)
         if (parts[layer.part].channel_names[static_cast<std::size_t>(channel)].is_number)
-            throw Error("has whole numbers (UINT) in its channels, which are no light; expected HALF or FLOAT");
+            throw Error("has whole numbers (UINT) in its channels, which are not light; expected HALF or FLOAT");
     return {layer.part, std::move(channels)};
 }
 

@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kFormatBytes = 16;
 
 /// The formats of image_format, for messages.
-constexpr const char* kReadFormats = "PNG, JPEG, OpenEXR, Radiance HDR, TIFF, BMP, WebP or TGA";
+constexpr const char* kFormatNames = "PNG, JPEG, OpenEXR, Radiance HDR, TIFF, BMP, WebP or TGA";
 
 /// Returns OpenImageIO's name of the reader for a file's first bytes: "png", "jpeg", "openexr", "hdr", "tiff", "bmp",
 /// "webp", or "targa" by the suffix of `path`, because that format has no signature. Empty for anything else:
@@ -32,14 +32,14 @@ constexpr const char* kReadFormats = "PNG, JPEG, OpenEXR, Radiance HDR, TIFF, BM
 std::string image_format(std::span<const std::uint8_t> first_bytes, const std::string& path) {
     using namespace std::string_view_literals;
     const std::string_view bytes(reinterpret_cast<const char*>(first_bytes.data()), first_bytes.size());
-    const auto begins = [&](std::string_view mark) { return bytes.substr(0, mark.size()) == mark; };
-    if (begins("\x89PNG\r\n\x1a\n"sv)) return "png";
-    if (begins("\xff\xd8\xff"sv)) return "jpeg";
-    if (begins("\x76\x2f\x31\x01"sv)) return "openexr";
-    if (begins("#?RADIANCE"sv) || begins("#?RGBE"sv)) return "hdr";
-    if (begins("II*\0"sv) || begins("MM\0*"sv)) return "tiff";
-    if (begins("RIFF"sv) && bytes.substr(std::min<std::size_t>(8, bytes.size()), 4) == "WEBP"sv) return "webp";
-    if (begins("BM"sv)) return "bmp";
+    const auto starts_with = [&](std::string_view mark) { return bytes.substr(0, mark.size()) == mark; };
+    if (starts_with("\x89PNG\r\n\x1a\n"sv)) return "png";
+    if (starts_with("\xff\xd8\xff"sv)) return "jpeg";
+    if (starts_with("\x76\x2f\x31\x01"sv)) return "openexr";
+    if (starts_with("#?RADIANCE"sv) || starts_with("#?RGBE"sv)) return "hdr";
+    if (starts_with("II*\0"sv) || starts_with("MM\0*"sv)) return "tiff";
+    if (starts_with("RIFF"sv) && bytes.substr(std::min<std::size_t>(8, bytes.size()), 4) == "WEBP"sv) return "webp";
+    if (starts_with("BM"sv)) return "bmp";
     return io::suffix_of(path) == ".tga" ? "targa" : "";
 }
 
@@ -57,7 +57,7 @@ std::unique_ptr<OpenPicture> open_picture(const std::string& path, std::span<con
         beginning.resize(static_cast<std::size_t>(file.gcount()));
     }
     const std::string format = image_format(beginning, path);
-    if (format.empty()) throw Error(std::string("is no picture; expected ") + kReadFormats);
+    if (format.empty()) throw Error(std::string("is not a picture; expected ") + kFormatNames);
     if (!layer.empty() && format != "openexr")
         throw Error("has no layers, and layer " + io::in_quotes(layer) +
                     " was requested; only OpenEXR files have layers");
@@ -66,7 +66,7 @@ std::unique_ptr<OpenPicture> open_picture(const std::string& path, std::span<con
                                      : open_with_openimageio(format, path, bytes, layer);
     picture->encoded_size = path.empty() ? bytes.size() : std::filesystem::file_size(path);
     if (picture->width < 1 || picture->height < 1 || picture->channels < 1)
-        throw Error("is no flat picture with colours");
+        throw Error("has no flat picture with colours");
     return picture;
 }
 
@@ -77,12 +77,11 @@ using Matrix = std::array<double, 9>;
 /// ITU-R BT.709, which OpenEXR assumes if a file has no chromaticities.
 constexpr Chromaticities kRec709 = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
 
-/// Files of X, Y and Z give an arbitrary white point.
+/// Primaries of files of X, Y and Z, whose white point is arbitrary.
 constexpr std::array<double, 6> kXyzPrimaries = {1, 0, 0, 1, 0, 0};
 
 bool are_close(const Chromaticities& a, const Chromaticities& b) {
-    // Files give four digits.
-    constexpr double kRounding = 2e-4;
+    constexpr double kRounding = 2e-4;  // files have four digits
     return std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) { return std::abs(x - y) < kRounding; });
 }
 
@@ -96,26 +95,28 @@ Matrix xyz_from(const Chromaticities& c) {
     const Matrix primaries = {red[0], green[0], blue[0], red[1], green[1], blue[1], red[2], green[2], blue[2]};
     const double area = (c[2] - c[0]) * (c[5] - c[1]) - (c[4] - c[0]) * (c[3] - c[1]);
     if (!(std::abs(area) > 1e-4) || !(white[1] > 1e-4)) return {};
-    const auto share =
+    const auto scale =
         sensor_detail::applied(sensor_detail::inverse(primaries), {white[0] / white[1], 1, white[2] / white[1]});
-    return sensor_detail::product(primaries, sensor_detail::diagonal(share));
+    return sensor_detail::product(primaries, sensor_detail::diagonal(scale));
 }
 
 }  // namespace
 
 std::optional<Matrix> rec709_from(const Chromaticities& chromaticities) {
     if (are_close(chromaticities, kRec709)) return std::nullopt;
-    const Matrix to = sensor_detail::inverse(xyz_from(kRec709));
-    if (std::equal(kXyzPrimaries.begin(), kXyzPrimaries.end(), chromaticities.begin())) return to;
-    const Matrix from = xyz_from(chromaticities);
-    const auto all_below = [](const auto& values, double most) {
-        return std::all_of(values.begin(), values.end(), [&](double v) { return std::abs(v) < most; });
+    const Matrix rec709_from_xyz = sensor_detail::inverse(xyz_from(kRec709));
+    if (std::equal(kXyzPrimaries.begin(), kXyzPrimaries.end(), chromaticities.begin())) return rec709_from_xyz;
+    const Matrix xyz_from_file = xyz_from(chromaticities);
+    const auto all_below = [](const auto& values, double limit) {
+        return std::all_of(values.begin(), values.end(), [&](double v) { return std::abs(v) < limit; });
     };
-    if (!all_below(chromaticities, 10) || !all_below(from, 1e4) || from == Matrix{})
-        throw Error("names chromaticities of red, green, blue and white that span no colours");
+    if (!all_below(chromaticities, 10) || !all_below(xyz_from_file, 1e4) || xyz_from_file == Matrix{})
+        throw Error("has degenerate chromaticities of red, green, blue and white");
     const auto white_of = [](const Matrix& m) { return sensor_detail::applied(m, {1, 1, 1}); };
     return sensor_detail::product(
-        to, sensor_detail::product(sensor_detail::adaptation(white_of(from), white_of(xyz_from(kRec709))), from));
+        rec709_from_xyz,
+        sensor_detail::product(sensor_detail::adaptation(white_of(xyz_from_file), white_of(xyz_from(kRec709))),
+                               xyz_from_file));
 }
 
 void apply_matrix(const Matrix& matrix, float* pixels, std::size_t count, std::size_t stride) {

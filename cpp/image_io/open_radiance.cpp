@@ -1,6 +1,6 @@
-// Reads Radiance pictures (.hdr) without OpenImageIO, whose reader supports neither the lines EXPOSURE and COLORCORR,
-// nor pictures that start at another corner, nor X, Y and Z, nor the older run-length coding. The format is described
-// in Radiance's "File Formats" and in Ward, "Real Pixels" (Graphics Gems II, 1991).
+// Reader of Radiance pictures (.hdr). OpenImageIO's reader supports neither the lines EXPOSURE and COLORCORR, nor
+// pictures that start at another corner, nor X, Y and Z, nor the older run-length coding. The format is described in
+// Radiance's "File Formats" and in Ward, "Real Pixels" (Graphics Gems II, 1991).
 
 #include <algorithm>
 #include <array>
@@ -30,7 +30,8 @@ public:
         if (begin_ == end_ && !read_more()) return -1;
         return buffer_[begin_++];
     }
-    std::uint8_t wanted() {
+    /// Returns the next byte. Throws Error at the end.
+    std::uint8_t next_or_throw() {
         const int byte = next();
         if (byte < 0) throw Error(std::string(kBroken) + " (it ends early)");
         return static_cast<std::uint8_t>(byte);
@@ -55,9 +56,10 @@ private:
     std::size_t begin_ = 0, end_ = 0;
 };
 
-/// Three mantissas and their exponent.
+/// Encoded pixel: the mantissas of red, green and blue, and their common exponent.
 using Rgbe = std::array<std::uint8_t, 4>;
 
+/// Opened Radiance picture, whose header has been read.
 class RadiancePicture final : public OpenPicture {
 public:
     RadiancePicture(const std::string& path, std::span<const std::uint8_t> bytes) : bytes_(path, bytes) {
@@ -67,7 +69,7 @@ public:
         read_resolution();
     }
 
-    void read(int, int, std::uint8_t*, const KeepGoing&) override { throw Error("holds no codes of 8 bits"); }
+    void read(int, int, std::uint8_t*, const KeepGoing&) override { throw Error("has no 8-bit values"); }
 
     void read(int count, int stride, float* pixels, const KeepGoing& keep_going) override {
         constexpr int kLines = 64;  // between two calls of keep_going
@@ -85,8 +87,8 @@ public:
                                             static_cast<std::size_t>(stride);
                 const Rgbe& rgbe = line[static_cast<std::size_t>(k)];
                 for (int c = 0; c < std::min(count, 3); ++c)
-                    pixel[c] = light_of(rgbe[static_cast<std::size_t>(c)], rgbe[3]) *
-                               static_cast<float>(factors_[static_cast<std::size_t>(c)]);
+                    pixel[c] = value_of(rgbe[static_cast<std::size_t>(c)], rgbe[3]) *
+                               static_cast<float>(scale_[static_cast<std::size_t>(c)]);
             }
         }
     }
@@ -94,10 +96,10 @@ public:
 private:
     /// Returns the next header line without its line end. Throws Error if the line does not end.
     std::string next_line() {
-        constexpr std::size_t kLongest = 1 << 16;
+        constexpr std::size_t kMaxLength = 1 << 16;
         std::string line;
         for (int byte = bytes_.next(); byte != '\n'; byte = bytes_.next()) {
-            if (byte < 0 || line.size() == kLongest) throw Error(std::string(kBroken) + " (its header has no end)");
+            if (byte < 0 || line.size() == kMaxLength) throw Error(std::string(kBroken) + " (its header has no end)");
             line += static_cast<char>(byte);
         }
         if (line.ends_with('\r')) line.pop_back();
@@ -115,12 +117,13 @@ private:
             if (const auto format = value("FORMAT=")) read_format(*format);
             if (const auto exposure = value("EXPOSURE=")) divide_by(numbers<1>("EXPOSURE", *exposure));
             if (const auto correction = value("COLORCORR=")) divide_by(numbers<3>("COLORCORR", *correction));
-            if (const auto primaries = value("PRIMARIES=")) primaries_ = numbers<8>("PRIMARIES", *primaries);
+            if (const auto primaries = value("PRIMARIES=")) chromaticities_ = numbers<8>("PRIMARIES", *primaries);
         }
-        const auto chromaticities = is_xyz_ ? std::optional(kXyzChromaticities) : primaries_;
+        const auto chromaticities = is_xyz_ ? std::optional(kXyzChromaticities) : chromaticities_;
         if (chromaticities) rec709 = rec709_from(*chromaticities);
     }
 
+    /// Reads the line FORMAT.
     void read_format(std::string_view format) {
         is_xyz_ = format == "32-bit_rle_xyze";
         if (!is_xyz_ && format != "32-bit_rle_rgbe")
@@ -128,6 +131,7 @@ private:
                         "; expected 32-bit_rle_rgbe or 32-bit_rle_xyze");
     }
 
+    /// Parses N numbers of the header line `name`.
     template <std::size_t N>
     static std::array<double, N> numbers(const std::string& name, std::string_view text) {
         std::array<double, N> out{};
@@ -142,14 +146,14 @@ private:
         return out;
     }
 
-    /// Divides by a factor with which the pixels have been multiplied. A file can have several such lines, which all
-    /// apply.
+    /// Divides the scale of the pixels by factors with which the file's pixels have been multiplied (one for all
+    /// channels, or one per channel). A file can have several such lines, which all apply.
     template <std::size_t N>
     void divide_by(const std::array<double, N>& factors) {
         for (std::size_t c = 0; c < 3; ++c) {
             const double factor = factors[N == 1 ? 0 : c];
-            factors_[c] /= factor;
-            if (!(factor > 0) || !(factors_[c] > 1e-30 && factors_[c] < 1e30))
+            scale_[c] /= factor;
+            if (!(factor > 0) || !(scale_[c] > 1e-30 && scale_[c] < 1e30))
                 throw Error(std::string("has a line ") + (N == 1 ? "EXPOSURE" : "COLORCORR") +
                             " whose numbers are not positive, or far from 1");
         }
@@ -166,8 +170,8 @@ private:
             std::string_view number = io::take_word(rest);
             const std::optional<std::int64_t> size = io::take_integer(number);
             const bool is_axis = axis == "-Y" || axis == "+Y" || axis == "-X" || axis == "+X";
-            if (!is_axis || !size || !number.empty() || *size < 1 || *size > kLargest)
-                throw Error(std::string(kBroken) + " (its size is no line such as \"-Y 512 +X 1024\")");
+            if (!is_axis || !size || !number.empty() || *size < 1 || *size > kMaxSize)
+                throw Error(std::string(kBroken) + " (expected a line of its size such as \"-Y 512 +X 1024\")");
             if (axis[1] == 'X') {
                 has_x = true;
                 width = static_cast<int>(*size);
@@ -182,61 +186,65 @@ private:
         if (!has_x || !has_y) throw Error(std::string(kBroken) + " (its size names one axis twice)");
     }
 
+    /// Reads a scanline, in one of the two codings.
     void read_line(std::vector<Rgbe>& line) {
-        constexpr std::size_t kShortest = 8, kLongest = 0x7fff;  // length of scanlines with run lengths per channel
+        constexpr std::size_t kMinLength = 8, kMaxLength = 0x7fff;  // length of scanlines with run lengths per channel
         Rgbe first;
-        for (std::uint8_t& byte : first) byte = bytes_.wanted();
-        const bool is_by_channels =
-            line.size() >= kShortest && line.size() <= kLongest && first[0] == 2 && first[1] == 2 && first[2] < 128;
-        if (!is_by_channels) return read_older(line, first);
+        for (std::uint8_t& byte : first) byte = bytes_.next_or_throw();
+        const bool has_channel_runs =
+            line.size() >= kMinLength && line.size() <= kMaxLength && first[0] == 2 && first[1] == 2 && first[2] < 128;
+        if (!has_channel_runs) return read_old_coding(line, first);
         if (std::size_t{256} * first[2] + first[3] != line.size())
             throw Error(std::string(kBroken) + " (a line has another length than the picture)");
-        for (std::size_t channel = 0; channel < 4; ++channel) read_channel(line, channel);
+        for (std::size_t channel = 0; channel < 4; ++channel) read_channel_runs(line, channel);
     }
 
-    void read_channel(std::vector<Rgbe>& line, std::size_t channel) {
+    /// Reads one channel of a scanline as run lengths: a code above 128 repeats a byte, any other one copies bytes.
+    void read_channel_runs(std::vector<Rgbe>& line, std::size_t channel) {
         for (std::size_t i = 0; i < line.size();) {
-            const std::uint8_t code = bytes_.wanted();
+            const std::uint8_t code = bytes_.next_or_throw();
             const bool is_run = code > 128;
             const std::size_t count = is_run ? code & 127u : code;
             if (count > line.size() - i) throw Error(std::string(kBroken) + " (a run is longer than its line)");
-            const std::uint8_t repeated = is_run ? bytes_.wanted() : std::uint8_t{0};
+            const std::uint8_t repeated = is_run ? bytes_.next_or_throw() : std::uint8_t{0};
             for (const std::size_t end = i + count; i < end; ++i)
-                line[i][channel] = is_run ? repeated : bytes_.wanted();
+                line[i][channel] = is_run ? repeated : bytes_.next_or_throw();
         }
     }
 
     /// Reads the older coding, pixel by pixel. A pixel with the mantissas 1, 1 and 1 repeats the one before it, as
     /// often as its exponent says; the next such pixel in a row counts 256 times as much.
-    void read_older(std::vector<Rgbe>& line, Rgbe next) {
-        std::uint64_t unit = 1;
+    void read_old_coding(std::vector<Rgbe>& line, Rgbe next) {
+        std::uint64_t repeat_unit = 1;
         for (std::size_t i = 0;;) {
             if (next[0] == 1 && next[1] == 1 && next[2] == 1) {
-                const std::uint64_t count = unit * next[3];
+                const std::uint64_t count = repeat_unit * next[3];
                 if (i == 0 || count > line.size() - i)
                     throw Error(std::string(kBroken) + " (a run is longer than its line)");
                 std::fill_n(line.begin() + static_cast<std::ptrdiff_t>(i), count, line[i - 1]);
                 i += count;
-                unit = std::min<std::uint64_t>(256 * unit, std::uint64_t{1} << 40);
+                repeat_unit = std::min<std::uint64_t>(256 * repeat_unit, std::uint64_t{1} << 40);
             } else {
                 line[i++] = next;
-                unit = 1;
+                repeat_unit = 1;
             }
             if (i == line.size()) return;
-            for (std::uint8_t& byte : next) byte = bytes_.wanted();
+            for (std::uint8_t& byte : next) byte = bytes_.next_or_throw();
         }
     }
 
-    static float light_of(std::uint8_t mantissa, std::uint8_t exponent) {
+    /// Value of a mantissa: (mantissa / 256) 2^(exponent - 128); 0 for exponent 0.
+    static float value_of(std::uint8_t mantissa, std::uint8_t exponent) {
         return exponent == 0 ? 0.0f : std::ldexp(static_cast<float>(mantissa), exponent - 136);
     }
 
-    static constexpr std::int64_t kLargest = 1 << 24;
+    static constexpr std::int64_t kMaxSize = 1 << 24;
 
     Bytes bytes_;
-    bool is_xyz_ = false, is_by_columns_ = false, is_from_right_ = false, is_from_below_ = false;
-    std::array<double, 3> factors_{1, 1, 1};
-    std::optional<Chromaticities> primaries_;
+    bool is_xyz_ = false;  ///< true for X, Y and Z, false for red, green and blue
+    bool is_by_columns_ = false, is_from_right_ = false, is_from_below_ = false;  ///< order of the pixels
+    std::array<double, 3> scale_{1, 1, 1};  ///< factors of the channels, from EXPOSURE and COLORCORR
+    std::optional<Chromaticities> chromaticities_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 namespace realcam::image_io {
 namespace {
 
+/// Picture of a format that OpenImageIO decodes.
 class OpenImageIoPicture final : public OpenPicture {
 public:
     OpenImageIoPicture(const std::string& format, const std::string& path, std::span<const std::uint8_t> bytes,
@@ -15,24 +16,24 @@ public:
         const auto is_flat = [](const EncodedHeader& part) { return part.depth <= 1 && !part.is_deep; };
         if (std::ranges::none_of(decoder_->parts, is_flat)) return;
         if (format == "openexr") chosen_ = choose_layer(decoder_->parts, layer);
-        const EncodedHeader& found = part();
+        const EncodedHeader& header = part();
         // OpenImageIO decodes all channels, whichever are requested: a broken file may claim more than memory holds.
-        constexpr std::size_t kMostChannels = 64;
-        if (found.channel_names.size() > kMostChannels)
-            throw Error("has " + std::to_string(found.channel_names.size()) + " channels; at most 64 are read");
-        width = found.width;
-        height = found.height;
+        constexpr std::size_t kMaxChannels = 64;
+        if (header.channel_names.size() > kMaxChannels)
+            throw Error("has " + std::to_string(header.channel_names.size()) + " channels; at most 64 are read");
+        width = header.width;
+        height = header.height;
         if (format == "openexr")
-            read_openexr_header(found);
+            read_openexr_header(header);
         else
-            for (int c = 0; c < static_cast<int>(std::min<std::size_t>(found.channel_names.size(), 4)); ++c)
+            for (int c = 0; c < static_cast<int>(std::min<std::size_t>(header.channel_names.size(), 4)); ++c)
                 chosen_.channels.push_back(c);
         channels = static_cast<int>(chosen_.channels.size());
-        is_linear = found.is_floating_point;
-        is_wide = found.bytes_per_value > 1;
+        is_linear = header.is_floating_point;
+        is_wide = header.bytes_per_value > 1;
         // OpenEXR colours are always premultiplied by alpha.
         has_associated_alpha = format == "openexr" && channels == 4;
-        entries = found.entries;
+        entries = header.entries;
     }
 
     void read(int count, int stride, std::uint8_t* pixels, const KeepGoing& keep_going) override {
@@ -45,30 +46,30 @@ public:
 private:
     /// The picture is the display window: pixels of the data window outside of it are cropped, and pixels without data
     /// are black. For an environment map, which has no meaningful crop, the picture is the data window.
-    void read_openexr_header(const EncodedHeader& found) {
-        if (found.chromaticities) {
+    void read_openexr_header(const EncodedHeader& header) {
+        if (header.chromaticities) {
             Chromaticities chromaticities{};
-            std::copy(found.chromaticities->begin(), found.chromaticities->end(), chromaticities.begin());
+            std::copy(header.chromaticities->begin(), header.chromaticities->end(), chromaticities.begin());
             rec709 = rec709_from(chromaticities);
         }
-        if (found.texture_format == "CubeFace Environment") environment_map = EnvironmentMap::cube;
-        if (found.texture_format == "LatLong Environment") environment_map = EnvironmentMap::lat_long;
+        if (header.texture_format == "CubeFace Environment") environment_map = EnvironmentMap::cube;
+        if (header.texture_format == "LatLong Environment") environment_map = EnvironmentMap::lat_long;
         is_windowed_ = environment_map == EnvironmentMap::none &&
-                       (found.x != found.full_x || found.y != found.full_y || found.width != found.full_width ||
-                        found.height != found.full_height);
+                       (header.x != header.full_x || header.y != header.full_y || header.width != header.full_width ||
+                        header.height != header.full_height);
         if (!is_windowed_) return;
         encoded_pixels = pixel_count();
-        const auto meet = [](std::int64_t a, std::int64_t a_size, std::int64_t b, std::int64_t b_size) {
+        const auto overlap = [](std::int64_t a, std::int64_t a_size, std::int64_t b, std::int64_t b_size) {
             return a < b + b_size && b < a + a_size;
         };
-        if (!meet(found.x, found.width, found.full_x, found.full_width) ||
-            !meet(found.y, found.height, found.full_y, found.full_height))
+        if (!overlap(header.x, header.width, header.full_x, header.full_width) ||
+            !overlap(header.y, header.height, header.full_y, header.full_height))
             throw Error("has a data window that lies outside of its display window");
-        width = found.full_width;
-        height = found.full_height;
+        width = header.full_width;
+        height = header.full_height;
     }
 
-    /// Reads the rows of the data window and copies the part inside the picture to the beginning of its pixels.
+    /// Decodes the rows of the data window, and copies the part of them inside the picture (see OpenPicture::read).
     template <class Value>
     void read_as(int count, int stride, Value* pixels, const KeepGoing& keep_going) {
         constexpr std::int64_t kRows = 64;  // between two calls of keep_going
@@ -85,23 +86,23 @@ private:
         std::vector<Value> read(size(rows) * size(s.width) * size(read_channels));
         for (std::int64_t y = 0; y < s.height; y += rows) {
             check(keep_going);
-            const auto below = static_cast<int>(std::min<std::int64_t>(y + rows, s.height));
+            const auto end_row = static_cast<int>(std::min<std::int64_t>(y + rows, s.height));
             const Outcome outcome = decoder_->read(
-                {static_cast<int>(chosen_.part), static_cast<int>(y), below, used.min, used.max + 1}, read.data());
-            if (!outcome.is_good || tells_of_a_cut(outcome.said)) throw Error(kBroken + reason(outcome.said));
-            for (auto row = static_cast<int>(y); row < below; ++row) {
+                {static_cast<int>(chosen_.part), static_cast<int>(y), end_row, used.min, used.max + 1}, read.data());
+            if (!outcome.is_good || reports_truncation(outcome.said)) throw Error(kBroken + reason(outcome.said));
+            for (auto row = static_cast<int>(y); row < end_row; ++row) {
                 if (top + row < 0 || top + row >= height) continue;
-                const Value* from = read.data() + (size(row - y) * size(s.width) + size(first)) * size(read_channels);
-                Value* to = pixels + (size(top + row) * size(width) + size(left + first)) * size(stride);
-                for (int column = first; column < end; ++column, from += read_channels, to += stride)
-                    for (int c = 0; c < count; ++c) to[c] = from[chosen_.channels[size(c)] - used.min];
+                const Value* source = read.data() + (size(row - y) * size(s.width) + size(first)) * size(read_channels);
+                Value* target = pixels + (size(top + row) * size(width) + size(left + first)) * size(stride);
+                for (int column = first; column < end; ++column, source += read_channels, target += stride)
+                    for (int c = 0; c < count; ++c) target[c] = source[chosen_.channels[size(c)] - used.min];
             }
         }
     }
 
-    /// True if OpenImageIO's message tells of truncated data. It decodes a truncated TIFF or JPEG to the end, with rows
-    /// of grey or nothing, and only reports it. For a JPEG it also reports harmless things, such as a few excess bytes.
-    bool tells_of_a_cut(const std::string& said) const {
+    /// True if OpenImageIO's message reports truncated data: it decodes a truncated TIFF or JPEG to the end, filling
+    /// the missing rows. For a JPEG it also reports harmless defects, such as excess bytes.
+    bool reports_truncation(const std::string& said) const {
         return is_jpeg_ ? said.find("Premature end") != std::string::npos : !said.empty();
     }
 
@@ -109,7 +110,7 @@ private:
 
     bool is_jpeg_;
     std::unique_ptr<PictureDecoder> decoder_;
-    ExrLayer chosen_;
+    ExrLayer chosen_;  // part and channels that are read
     bool is_windowed_ = false;  // the data window differs from the display window
 };
 

@@ -23,16 +23,17 @@ std::string folder_of(const std::string& path) {
     return folder.empty() ? "." : folder;
 }
 
+/// Returns a unique file name in the folder of `path`.
 std::string temporary_name(const std::string& path) {
     static std::atomic<int> counter{0};
     const std::string name = ".realcam-" + std::to_string(getpid()) + '-' + std::to_string(counter++) + ".part";
     return (fs::path(folder_of(path)) / name).string();
 }
 
-/// Follows symbolic links from a path to a file, which need not exist.
-std::string followed(std::string path) {
-    constexpr int kMostLinks = 40;  // the kernel's limit
-    for (int i = 0; i < kMostLinks; ++i) {
+/// Returns the path to which a chain of symbolic links leads; the file need not exist.
+std::string resolved_links(std::string path) {
+    constexpr int kMaxLinks = 40;  // the kernel's limit
+    for (int i = 0; i < kMaxLinks; ++i) {
         std::error_code error;
         const fs::path link = fs::read_symlink(path, error);
         if (error) break;
@@ -41,7 +42,8 @@ std::string followed(std::string path) {
     return path;
 }
 
-/// Links an unnamed file to a name. Returns false, with errno, if the name exists or the system cannot do it.
+/// Gives an unnamed file a name. Returns false, and sets errno, if the name exists or the file system does not support
+/// it.
 bool link_to(std::FILE* file, const std::string& name) {
     const std::string open_file = "/proc/self/fd/" + std::to_string(fileno(file));
     return linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
@@ -49,7 +51,7 @@ bool link_to(std::FILE* file, const std::string& name) {
 
 }  // namespace
 
-UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), target_(followed(path)) {
+UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), target_(resolved_links(path)) {
     check_target();
     constexpr mode_t kMode = 0666;
     int descriptor = -1;
@@ -61,12 +63,12 @@ UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), target_(f
         descriptor = open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kMode);
         if (descriptor < 0) fail(errno);
     }
-    // A replaced file may be private, so its mode is kept. Some file systems do not support modes.
-    struct stat before{};
-    if (stat(target_.c_str(), &before) == 0) static_cast<void>(fchmod(descriptor, before.st_mode & 07777));
+    // The mode of a replaced file is preserved, because the file may be private. Some file systems do not support
+    // modes.
+    struct stat replaced{};
+    if (stat(target_.c_str(), &replaced) == 0) static_cast<void>(fchmod(descriptor, replaced.st_mode & 07777));
     file_ = fdopen(descriptor, "wb");
-    // Unbuffered: whoever closes the picture could otherwise flush a buffer without success, and the error would be
-    // lost.
+    // Unbuffered, because a failed flush in std::fclose would go unnoticed.
     std::setvbuf(file_, nullptr, _IONBF, 0);
 }
 
@@ -85,8 +87,8 @@ void check_no_input(const std::string& output) {
     if (!fs::exists(output, error)) return;
     for (const std::string& input : io::recorded_inputs())
         if (fs::equivalent(output, input, error))
-            throw InputError(io::in_quotes(output) + " is a file that the output is made from (" +
-                             io::printable(input) + "); choose another name");
+            throw InputError(io::in_quotes(output) + " is also an input of this command (" + io::printable(input) +
+                             "); choose another name");
 }
 
 void UnfinishedFile::check_target() const {
@@ -102,15 +104,15 @@ void UnfinishedFile::check_target() const {
 }
 
 void UnfinishedFile::fail(int error) const {
-    const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
+    const bool is_full = error == ENOSPC || error == EDQUOT || error == EFBIG;
     throw ImageFileError(
         path_ + ": cannot be written: " +
-        (full ? "the disk is full, or a limit on file sizes is reached" : std::generic_category().message(error)));
+        (is_full ? "the disk is full, or a limit on file sizes is reached" : std::generic_category().message(error)));
 }
 
 void UnfinishedFile::finish() {
     if (failure_ != 0) fail(failure_);
-    // Some file systems report only now that they are full.
+    // Some file systems report only at fsync that they are full.
     if (fsync(fileno(file_)) != 0) fail(errno);
     // linkat does not replace an existing name, but rename does.
     if (temporary_.empty() && !link_to(file_, target_)) {

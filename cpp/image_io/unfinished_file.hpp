@@ -4,12 +4,13 @@
 
 namespace realcam::image_io {
 
-/// File that gets its name when it is complete. Until then it is unnamed, if the file system supports that, so that
-/// nothing is left behind even if the program is killed; otherwise it has a temporary name in the same folder.
+/// Output file that appears under its name only when it is complete. Until then it is unnamed, if the file system
+/// supports that, so that nothing is left behind even if the program is killed; otherwise it has a temporary name in
+/// the same folder.
 class UnfinishedFile {
 public:
-    /// Throws ImageFileError if no file of this name can be made: the folder is not writable, the name is too long, or
-    /// it belongs to something other than a file. A symbolic link is followed.
+    /// Throws ImageFileError if no file of this name can be created: the folder is not writable, the name is too long,
+    /// or it belongs to something other than a file. A symbolic link is followed.
     explicit UnfinishedFile(const std::string& path);
     UnfinishedFile(const UnfinishedFile&) = delete;
     UnfinishedFile& operator=(const UnfinishedFile&) = delete;
@@ -24,12 +25,14 @@ public:
     void finish();
 
 private:
+    /// Throws ImageFileError if the target exists and cannot be replaced, and InputError if it is a recorded input.
     void check_target() const;
+    /// Throws ImageFileError for an errno.
     [[noreturn]] void fail(int error) const;
 
-    std::string path_;  ///< path as given by the user
+    std::string path_;  ///< path as specified, for messages
     std::string target_;  ///< path after following symbolic links
-    std::string temporary_;  ///< empty if the file has no name yet
+    std::string temporary_;  ///< temporary name; empty while the file is unnamed
     std::FILE* file_ = nullptr;
     int failure_ = 0;  ///< errno of the first write that failed
 };

@@ -14,8 +14,8 @@
 namespace realcam::image_io {
 namespace {
 
-/// Number of rows converted at a time, so that a large picture is not held twice.
-constexpr int kRows = 64;
+/// Number of rows converted at a time, so that memory does not hold a large picture twice.
+constexpr int kRowsPerChunk = 64;
 
 /// Format for writing: the suffix of its files, its name in OpenImageIO, and the attribute that compresses it.
 struct WrittenFormat {
@@ -25,21 +25,22 @@ struct WrittenFormat {
 };
 
 constexpr WrittenFormat kExr{".exr", "exr", "zip"};
-constexpr WrittenFormat kDeveloped[] = {
+constexpr WrittenFormat kDevelopedFormats[] = {
     {".png", "png", ""},     {".jpg", "jpeg", "jpeg:95"}, {".jpeg", "jpeg", "jpeg:95"},
     {".tif", "tiff", "zip"}, {".tiff", "tiff", "zip"},    {".webp", "webp", "lossless"},
 };
 
+/// Returns the format of a path's suffix. Throws ImageFileError if it is unknown.
 const WrittenFormat& format_of(const std::string& path) {
     const std::string suffix = io::suffix_of(path);
     if (suffix == kExr.suffix) return kExr;
-    for (const WrittenFormat& format : kDeveloped)
+    for (const WrittenFormat& format : kDevelopedFormats)
         if (suffix == format.suffix) return format;
     throw ImageFileError(path + ": " + (suffix.empty() ? "there is no suffix" : "\"" + suffix + "\" is not written") +
                          "; expected .png, .jpg, .tif, .webp (developed) or .exr (exposure and depth)");
 }
 
-/// Throws ImageFileError for errors that UnfinishedFile could report only in the system's words.
+/// Throws ImageFileError for an unknown suffix or a missing folder, for which the system's messages are less clear.
 void check_name(const std::string& path) {
     namespace fs = std::filesystem;
     format_of(path);
@@ -51,13 +52,16 @@ void check_name(const std::string& path) {
                                      : ": the folder \"" + folder.string() + "\" does not exist"));
 }
 
+/// The number of values in a row of a picture.
 std::size_t row_values(const PictureView& picture, std::size_t channels) {
     return channels * static_cast<std::size_t>(picture.width);
 }
 
+/// Metadata: names and values.
 using Entries = std::vector<std::pair<std::string, std::string>>;
 
-EncodedPicture encoded(const WrittenFormat& format, int width, int height, const Entries& entries) {
+/// Header of a file with the metadata, before its channels are set.
+EncodedPicture picture_header(const WrittenFormat& format, int width, int height, const Entries& entries) {
     EncodedPicture picture{format.name, width, height, {}, {}};
     picture.attributes.emplace_back("Software", "realcam " REALCAM_VERSION);
     if (*format.compression) picture.attributes.emplace_back("compression", format.compression);
@@ -65,8 +69,9 @@ EncodedPicture encoded(const WrittenFormat& format, int width, int height, const
     return picture;
 }
 
-EncodedPicture encoded_codes(const WrittenFormat& format, int width, int height, const Entries& entries) {
-    EncodedPicture picture = encoded(format, width, height, entries);
+/// Header of a file of 8-bit sRGB values.
+EncodedPicture developed_header(const WrittenFormat& format, int width, int height, const Entries& entries) {
+    EncodedPicture picture = picture_header(format, width, height, entries);
     picture.attributes.emplace_back("oiio:ColorSpace", "sRGB");
     if (picture.format == "jpeg") picture.attributes.emplace_back("jpeg:subsampling", "4:4:4");
     if (picture.format == "jpeg" || picture.format == "tiff") {
@@ -78,7 +83,8 @@ EncodedPicture encoded_codes(const WrittenFormat& format, int width, int height,
     return picture;
 }
 
-/// Writes a picture whose rows `fill(first_row, end_row, buffer)` provides, some at a time.
+/// Writes a picture in chunks of rows, which fill(first_row, end_row, buffer) provides. Throws ImageFileError and
+/// Cancelled.
 template <class Value, class Fill>
 void write_rows(const std::string& path, const EncodedPicture& picture, const KeepGoing& keep_going, Fill&& fill) {
     UnfinishedFile file(path);
@@ -88,10 +94,10 @@ void write_rows(const std::string& path, const EncodedPicture& picture, const Ke
     try {
         const auto encoder = open_encoder(picture, file);
         std::vector<Value> rows(static_cast<std::size_t>(picture.width) *
-                                (picture.channels.empty() ? 3 : picture.channels.size()) * kRows);
-        for (int y = 0; y < picture.height; y += kRows) {
+                                (picture.channels.empty() ? 3 : picture.channels.size()) * kRowsPerChunk);
+        for (int y = 0; y < picture.height; y += kRowsPerChunk) {
             if (keep_going && !keep_going()) throw Cancelled();
-            const int end = std::min(y + kRows, picture.height);
+            const int end = std::min(y + kRowsPerChunk, picture.height);
             fill(static_cast<std::size_t>(y), static_cast<std::size_t>(end), rows.data());
             check(encoder->write(y, end, rows.data()));
         }
@@ -104,11 +110,12 @@ void write_rows(const std::string& path, const EncodedPicture& picture, const Ke
     file.finish();
 }
 
+/// Writes a picture as 8-bit sRGB values.
 void write_developed(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
                      ToneCurve tone, const KeepGoing& keep_going) {
     Entries entries = metadata.entries();
     entries.emplace_back("realcam:tone", tone == ToneCurve::film ? "film" : "linear");
-    const EncodedPicture file = encoded_codes(format_of(path), picture.width, picture.height, entries);
+    const EncodedPicture file = developed_header(format_of(path), picture.width, picture.height, entries);
     const std::size_t row = row_values(picture, 3);
     write_rows<std::uint8_t>(path, file, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
         for (std::size_t i = first * row; i < end * row; ++i) {
@@ -159,6 +166,7 @@ std::string json_of(const IdNames& names) {
     return json.end().finish();
 }
 
+/// Adds the channels of the layers, and the attributes with their units and the names of ids.
 void add_layers(const PictureView& picture, EncodedPicture& exr) {
     std::string unit = "R, G, B: lux seconds on the film, linear Rec. 709; Z: metres from the film along the axis";
     for (const PictureView::Layer& layer : picture.layers) {
@@ -174,9 +182,10 @@ void add_layers(const PictureView& picture, EncodedPicture& exr) {
         exr.attributes.emplace_back("realcam:materials", json_of(picture.material_names));
 }
 
+/// Writes exposure, depth and layers as OpenEXR.
 void write_exr(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
                const KeepGoing& keep_going) {
-    EncodedPicture exr = encoded(kExr, picture.width, picture.height, metadata.entries());
+    EncodedPicture exr = picture_header(kExr, picture.width, picture.height, metadata.entries());
     exr.channels = {{"R"}, {"G"}, {"B"}, {"Z"}};
     add_layers(picture, exr);
     // Standard attributes of OpenEXR, in its units.
@@ -222,9 +231,9 @@ void write_image(const PictureView& picture, const std::string& path, const io::
 void write_codes(const std::string& path, int width, int height, const std::uint8_t* codes,
                  const std::vector<std::pair<std::string, std::string>>& entries, const KeepGoing& keep_going) {
     check_name(path);
-    if (&format_of(path) == &kExr) throw ImageFileError(path + ": codes are written to .png, .jpg, .tif or .webp");
+    if (&format_of(path) == &kExr) throw ImageFileError(path + ": 8-bit values need a .png, .jpg, .tif or .webp file");
     if (width < 1 || height < 1) throw ImageFileError(path + ": the picture is empty");
-    const EncodedPicture file = encoded_codes(format_of(path), width, height, entries);
+    const EncodedPicture file = developed_header(format_of(path), width, height, entries);
     const std::size_t row = 3 * static_cast<std::size_t>(width);
     write_rows<std::uint8_t>(path, file, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
         std::memcpy(out, codes + first * row, (end - first) * row);

@@ -24,27 +24,29 @@
 namespace realcam::io {
 namespace {
 
-/// Throws FileError or SceneFileError if the file cannot be read, is empty, or is larger than the free memory, which
-/// all formats need.
+/// Throws FileError or SceneFileError if the file cannot be read, is empty, or is larger than the free memory: readers
+/// of all formats need at least the file's size.
 void check_file(const std::string& path) {
     const std::uint64_t size = RegularFile(path).size();
     if (size == 0) throw SceneFileError(path + ": is empty; expected a scene with triangles");
     if (const std::string why = too_much_memory(size); !why.empty()) throw SceneFileError(path + ": holds " + why);
 }
 
-void append(std::vector<std::string>& warnings, std::vector<std::string> more) {
-    warnings.insert(warnings.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+void append(std::vector<std::string>& warnings, std::vector<std::string> new_warnings) {
+    warnings.insert(warnings.end(), std::make_move_iterator(new_warnings.begin()),
+                    std::make_move_iterator(new_warnings.end()));
 }
 
-/// Limits the number of warnings: a file may have a million errors.
+/// Limits the number of warnings, because a file may have a million errors.
 void limit_warnings(std::vector<std::string>& warnings, const std::string& path) {
-    constexpr std::size_t kMost = 50;
-    if (warnings.size() <= kMost) return;
-    const std::size_t left_out = warnings.size() - (kMost - 1);
-    warnings.resize(kMost - 1);
+    constexpr std::size_t kMaxWarnings = 50;
+    if (warnings.size() <= kMaxWarnings) return;
+    const std::size_t left_out = warnings.size() - (kMaxWarnings - 1);
+    warnings.resize(kMaxWarnings - 1);
     warnings.push_back(path + ": and " + std::to_string(left_out) + " warnings more");
 }
 
+/// Reads a PLY file, whose textures become materials.
 Assembly read_ply_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image,
                         Checkpoint& checkpoint) {
     if (!options.objects.empty()) throw InputError(path + ": a .ply file has no nodes that could be objects");
@@ -53,14 +55,14 @@ Assembly read_ply_scene(const std::string& path, const SceneFileOptions& options
     file.path = path;
     for (const std::string& name : read_ply(scene, path, options.scale, checkpoint))
         file.pictures.push_back({name, false, {}});
-    Material plain;
+    Material default_material;
     // Vertex colours are the surface's own colours.
-    if (!scene.colors.empty()) plain.diffuse = {1, 1, 1};
-    plain.vertex_opacity = are_transparent(scene.colors);
+    if (!scene.colors.empty()) default_material.diffuse = {1, 1, 1};
+    default_material.vertex_opacity = are_transparent(scene.colors);
     Scene materials;
-    materials.materials.assign(file.pictures.size() + 1, plain);
+    materials.materials.assign(file.pictures.size() + 1, default_material);
     if (!file.pictures.empty() && scene.uvs.empty())
-        scene.warnings.push_back(path + ": names a texture, and has no texture coordinates to lay it by");
+        scene.warnings.push_back(path + ": names a texture, and has no texture coordinates, which a texture needs");
     SceneTextures textures(materials, file, read_image, checkpoint);
     std::vector<bool> is_used(materials.materials.size(), false);
     for (const Triangle& triangle : scene.triangles) is_used[triangle.material] = true;
@@ -75,7 +77,7 @@ Assembly read_ply_scene(const std::string& path, const SceneFileOptions& options
     return scene;
 }
 
-/// Returns the cameras of the nodes, named after these, or by their own name if a node has none.
+/// Returns the cameras of a file's nodes. A camera has the name of its node, or its own name if the node has none.
 std::vector<SceneCamera> cameras_of(const FileScene& file, SceneObjects& objects, std::vector<std::string>& warnings) {
     std::vector<SceneCamera> cameras;
     if (file.cameras.empty()) return cameras;
@@ -83,19 +85,20 @@ std::vector<SceneCamera> cameras_of(const FileScene& file, SceneObjects& objects
     const std::vector<Affine<double>> transforms = global_transforms(file.nodes);
     for (std::uint32_t i = 0; i < file.nodes.size(); ++i) {
         if (file.nodes[i].camera < 0) continue;
-        const FileCamera& from = file.cameras[static_cast<std::size_t>(file.nodes[i].camera)];
+        const FileCamera& camera = file.cameras[static_cast<std::size_t>(file.nodes[i].camera)];
         const AnimatedTransform transform = objects.placement(i, transforms[i]);
-        std::string name = !file.nodes[i].name.empty() ? file.nodes[i].name : from.name;
+        std::string name = !file.nodes[i].name.empty() ? file.nodes[i].name : camera.name;
         if (name.empty()) name = "camera " + std::to_string(file.nodes[i].camera);
         if (const std::string why = transform_error(transform.scene_from_object); !why.empty()) {
             warnings.push_back(file.path + ": camera " + in_quotes(name) + " is left out: " + why);
             continue;
         }
-        cameras.push_back({names.take(name), transform.scene_from_object, from.vertical_field_rad, transform.motion});
+        cameras.push_back({names.take(name), transform.scene_from_object, camera.vertical_field_rad, transform.motion});
     }
     return cameras;
 }
 
+/// Builds the scene of an OBJ or glTF file from its parsed contents.
 Assembly assemble(const FileScene& file, const SceneFileOptions& options, const ImageReader& read_image,
                   Checkpoint& checkpoint) {
     Scene static_geometry, materials;
@@ -105,18 +108,18 @@ Assembly assemble(const FileScene& file, const SceneFileOptions& options, const 
     append(static_geometry.warnings, std::move(materials.warnings));
 
     SceneObjects objects(file, options.scale, options.objects, checkpoint);
-    const LeavesOut leaves_out = [&](std::uint32_t node, const Affine<double>& transform) {
+    const LeavesOut part_left_out = [&](std::uint32_t node, const Affine<double>& transform) {
         return objects.left_out(node, transform);
     };
-    const ScenePart all{file,         options.scale, 0, static_cast<std::uint32_t>(file.nodes.size()),
-                        std::nullopt, checkpoint};
-    visit_nodes(all, [&](std::uint32_t node, const Affine<double>& transform) {
-        const LeftOut left_out = leaves_out(node, transform);
+    const ScenePart whole_scene{file,         options.scale, 0, static_cast<std::uint32_t>(file.nodes.size()),
+                                std::nullopt, checkpoint};
+    visit_nodes(whole_scene, [&](std::uint32_t node, const Affine<double>& transform) {
+        const LeftOut left_out = part_left_out(node, transform);
         if (left_out != LeftOut::nothing) objects.add(node, transform, static_geometry);
         return left_out != LeftOut::all;
     });
-    read_geometry(static_geometry, all, leaves_out);
-    read_lights(static_geometry, all, leaves_out);
+    read_geometry(static_geometry, whole_scene, part_left_out);
+    read_lights(static_geometry, whole_scene, part_left_out);
     std::vector<SceneCamera> cameras = cameras_of(file, objects, static_geometry.warnings);
     std::vector<Instance> instances = objects.finish(materials);
     if (instances.empty())
@@ -141,6 +144,7 @@ Assembly read_gltf_scene(const std::string& path, const SceneFileOptions& option
     return assemble(read_gltf(path, checkpoint), options, read_image, checkpoint);
 }
 
+/// Format of scene files, with its reader.
 struct SceneFormat {
     std::string_view suffix;
     Assembly (*read)(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image,
@@ -150,6 +154,7 @@ struct SceneFormat {
 constexpr SceneFormat kFormats[] = {
     {".glb", &read_gltf_scene}, {".gltf", &read_gltf_scene}, {".obj", &read_obj_scene}, {".ply", &read_ply_scene}};
 
+/// Returns the format of a path's suffix. Throws SceneFileError if it is unknown.
 const SceneFormat& format_of(const std::string& path) {
     const std::string suffix = suffix_of(path);
     std::string known;
@@ -162,7 +167,7 @@ const SceneFormat& format_of(const std::string& path) {
 
 Assembly read_any(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image) {
     Checkpoint checkpoint(options.keep_going);
-    // The system has no longer paths, and messages need not repeat them.
+    // The system has no longer paths, and the message must not repeat all of it.
     if (path.size() > PATH_MAX) throw SceneFileError(in_quotes(path) + ": no such file");
     const SceneFormat& format = format_of(path);
     check_file(path);

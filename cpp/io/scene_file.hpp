@@ -10,6 +10,7 @@
 
 namespace realcam::io {
 
+/// Options of read_scene.
 struct SceneFileOptions {
     double scale = 1.0;  ///< metres per unit of the file
     std::vector<std::string> objects = {};  ///< names of nodes that become instances, with their descendants;
@@ -19,18 +20,20 @@ struct SceneFileOptions {
 };
 
 /// Reads a scene; the suffix selects the format. Throws SceneFileError if the file cannot be used, InputError for an
-/// invalid scale, and Cancelled. Errors that can be corrected are in Scene::warnings, at most 50 lines.
+/// invalid scale, and Cancelled. Errors that can be corrected are listed in Scene::warnings,
+/// at most 50 lines. `read_image` decodes the textures.
 ///
 /// Only regular files are read, and counts in a file are checked against its size and against the free memory before
 /// memory is allocated for them.
 ///
-/// Geometry: nodes are flattened, transforms applied in double precision; mirrored ones keep outward faces outward.
+/// Geometry: nodes are flattened, transforms applied in double precision; under mirroring transforms, outward faces
+/// remain outward.
 /// Named nodes become instances, several of one name "car", "car.2"; so do meshes whose copies would take a million
 /// triangles or more. Nodes of an OBJ are the faces after a line "o" or "g". Coordinates in a mesh of a glTF are
-/// floats: put far-away objects under a translated node. Skins and morph targets have the pose and weights of the file.
-/// Polygons of an OBJ may be concave. Triangles without area are dropped. glTF meshes without normals are flat, as that
-/// format requires. An OBJ with smoothing groups is smooth within them and flat elsewhere. Other OBJ and PLY files get
-/// smooth normals where faces share positions and meet at less than 45 degrees.
+/// floats: far-away objects should be placed by a translated node. Skins and morph targets have the file's pose and
+/// weights. Polygons of an OBJ may be concave. Triangles without area are dropped. glTF meshes without normals are
+/// flat, as that format requires. An OBJ with smoothing groups has smooth normals within them and flat ones elsewhere.
+/// Other OBJ and PLY files get smooth normals where faces share positions and meet at less than 45 degrees.
 ///
 /// Materials: all illumination models of MTL, and glTF's metallic-roughness model with the extensions in
 /// io/scene/gltf_material.hpp. MTL's Ke, and emissiveFactor times KHR_materials_emissive_strength, are radiance in
@@ -40,7 +43,7 @@ struct SceneFileOptions {
 ///
 /// Lights: KHR_lights_punctual, candela and lux. Cameras of a glTF are Assembly::cameras.
 ///
-/// `scale` applies to lengths alone; light keeps its units.
+/// `scale` applies to lengths alone; photometric quantities keep their values.
 Assembly read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image);
 
 }  // namespace realcam::io

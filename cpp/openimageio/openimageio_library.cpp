@@ -1,4 +1,4 @@
-// OpenImageIO's C++ library.
+// Implementation of image_io/openimageio.hpp by OpenImageIO's C++ library, for the executable.
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -17,27 +17,28 @@ using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
+/// Decoder by OpenImageIO's ImageInput.
 class LibraryDecoder final : public PictureDecoder {
 public:
     LibraryDecoder(const std::string& format, const std::string& path, std::span<const std::uint8_t> bytes) {
-        ImageSpec wishes, spec;
-        wishes.attribute("oiio:UnassociatedAlpha", 1);
+        ImageSpec configuration, spec;
+        configuration.attribute("oiio:UnassociatedAlpha", 1);
         if (path.empty()) {
             memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
             OIIO::Filesystem::IOProxy* proxy = memory_.get();
-            wishes.attribute("oiio:ioproxy", TypeDesc::PTR, &proxy);
+            configuration.attribute("oiio:ioproxy", TypeDesc::PTR, &proxy);
         }
         input_ = ImageInput::create(format);
         if (!input_) throw Error("OpenImageIO cannot read " + format + reason(OIIO::geterror()));
-        if (!input_->open(path.empty() ? "memory." + format : path, spec, wishes))
+        if (!input_->open(path.empty() ? "memory." + format : path, spec, configuration))
             throw Error(kBroken + reason(input_->geterror()));
-        // The headers of further parts may be broken: the decoder says so where one of them is read.
-        const int most = format == "openexr" ? kMostParts : 1;  // WebP cannot go back
-        opening_ = input_->geterror();
-        for (int part = 0; part < most && input_->seek_subimage(part, 0); ++part)
+        // The headers of further parts may be broken; read() reports it if such a part is read.
+        const int max_parts = format == "openexr" ? kMaxParts : 1;  // OpenImageIO cannot seek back in a WebP
+        opening_message_ = input_->geterror();
+        for (int part = 0; part < max_parts && input_->seek_subimage(part, 0); ++part)
             parts.push_back(header_of(input_->spec()));
-        if (parts.empty()) throw Error(kBroken + reason(opening_ + input_->geterror()));
-        input_->geterror();  // that there is no further part
+        if (parts.empty()) throw Error(kBroken + reason(opening_message_ + input_->geterror()));
+        input_->geterror();  // discards the message that there is no further part
     }
 
     Outcome read(const EncodedRegion& region, std::uint8_t* pixels) override {
@@ -71,20 +72,21 @@ private:
 
     Outcome read(const EncodedRegion& r, TypeDesc type, void* pixels) {
         const EncodedHeader& s = parts[static_cast<std::size_t>(r.part)];
-        const int top = s.y + r.first_row, below = s.y + r.end_row;
-        const bool good = s.tile_height > 0 ? input_->read_tiles(r.part, 0, s.x, s.x + s.width, top, below, 0, 1,
-                                                                 r.first_channel, r.end_channel, type, pixels)
-                                            : input_->read_scanlines(r.part, 0, top, below, 0, r.first_channel,
-                                                                     r.end_channel, type, pixels);
-        return {good, opening_ + input_->geterror()};
+        const int top = s.y + r.first_row, bottom = s.y + r.end_row;
+        const bool succeeded = s.tile_height > 0 ? input_->read_tiles(r.part, 0, s.x, s.x + s.width, top, bottom, 0, 1,
+                                                                      r.first_channel, r.end_channel, type, pixels)
+                                                 : input_->read_scanlines(r.part, 0, top, bottom, 0, r.first_channel,
+                                                                          r.end_channel, type, pixels);
+        return {succeeded, opening_message_ + input_->geterror()};
     }
 
     std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;  // outlives the input
     std::unique_ptr<ImageInput> input_;
-    std::string opening_;  ///< message about the header of a broken file that was opened all the same
+    std::string opening_message_;  ///< message about a broken header of a file that could be opened nevertheless
 };
 
-/// Encoders that notice a failed write print lines of their own, or let it pass: the file remembers it instead.
+/// Stream for OpenImageIO's encoders that reports every write as successful and records failures in the file: encoders
+/// that notice a failed write print messages of their own, or ignore it.
 class FileProxy final : public OIIO::Filesystem::IOFile {
 public:
     explicit FileProxy(UnfinishedFile& file) : IOFile(file.stream(), Write), file_(file) {}
@@ -99,6 +101,7 @@ private:
     UnfinishedFile& file_;
 };
 
+/// Encoder by OpenImageIO's ImageOutput.
 class LibraryEncoder final : public PictureEncoder {
 public:
     LibraryEncoder(const EncodedPicture& picture, UnfinishedFile& file) : proxy_(file) {
@@ -113,7 +116,7 @@ public:
         }
         const bool is_mixed = std::ranges::any_of(channels, &EncodedPicture::Channel::is_number);
         if (!is_mixed) spec.channelformats.clear();
-        // Channels of several types are handed over as the file has them.
+        // Channels of several types are passed in the types of the file.
         type_ = is_mixed ? TypeDesc() : spec.format;
         for (const auto& [name, value] : picture.attributes) {
             if (const auto* text = std::get_if<std::string>(&value)) spec.attribute(name, *text);
@@ -128,12 +131,12 @@ public:
     }
 
     Outcome write(int first, int end, const void* pixels) override {
-        const bool good = output_->write_scanlines(first, end, 0, type_, pixels);
-        return {good, output_->geterror()};
+        const bool succeeded = output_->write_scanlines(first, end, 0, type_, pixels);
+        return {succeeded, output_->geterror()};
     }
     Outcome close() override {
-        const bool good = output_->close();
-        return {good, output_->geterror()};
+        const bool succeeded = output_->close();
+        return {succeeded, output_->geterror()};
     }
 
 private:

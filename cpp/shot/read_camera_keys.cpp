@@ -12,12 +12,14 @@ std::optional<CameraKeyInterpolation> interpolation_named(std::string_view name)
     return std::nullopt;
 }
 
-/// A key of the file that a value in [[key]] replaces; both together are an error.
-struct StillKey {
-    bool (*has)(const CameraKey& key);
+/// Top-level key of the file that a value in [[key]] replaces; a file with both is an error.
+struct ReplacedKey {
+    bool (*has)(const CameraKey& key);  ///< true if the keyframe has the value
     const char* key;    ///< name in [[key]]
-    const char* still;  ///< name in the file
-    bool is_of_lens = false;  ///< a setting of the lens, not of the camera: the file's value belongs to its first lens
+    const char* top_level_key;  ///< name outside of [[key]]
+    /// True for a setting of the lens, not of the camera. The top-level value then applies only to the file's first
+    /// lens.
+    bool is_lens_setting = false;
 };
 
 template <auto value>
@@ -25,24 +27,26 @@ bool has(const CameraKey& key) {
     return (key.*value).has_value();
 }
 
-constexpr StillKey kStill[] = {{has<&CameraKey::focus_m>, "focus_m", "focus_m", true},
-                               {has<&CameraKey::focal_length_mm>, "focal_length_mm", "focal_length_mm", true},
-                               {has<&CameraKey::focal_length_mm>, "focal_length_mm", "zoom", true},
-                               {has<&CameraKey::f_number>, "f_number", "f_number", true},
-                               {has<&CameraKey::blades>, "blades", "blades", true},
-                               {has<&CameraKey::blade_rounding>, "blade_rounding", "blade_rounding", true},
-                               {has<&CameraKey::blade_rotation_deg>, "blade_rotation_deg", "blade_rotation_deg", true},
-                               {has<&CameraKey::exposure_time_s>, "exposure_time_s", "exposure_time_s"},
-                               {has<&CameraKey::iso>, "iso", "iso"},
-                               {has<&CameraKey::iso>, "iso", "iso_follows_s"},
-                               {has<&CameraKey::film_right_mm>, "film_shift_mm", "film_shift_mm"}};
+constexpr ReplacedKey kReplacedKeys[] = {
+    {has<&CameraKey::focus_m>, "focus_m", "focus_m", true},
+    {has<&CameraKey::focal_length_mm>, "focal_length_mm", "focal_length_mm", true},
+    {has<&CameraKey::focal_length_mm>, "focal_length_mm", "zoom", true},
+    {has<&CameraKey::f_number>, "f_number", "f_number", true},
+    {has<&CameraKey::blades>, "blades", "blades", true},
+    {has<&CameraKey::blade_rounding>, "blade_rounding", "blade_rounding", true},
+    {has<&CameraKey::blade_rotation_deg>, "blade_rotation_deg", "blade_rotation_deg", true},
+    {has<&CameraKey::exposure_time_s>, "exposure_time_s", "exposure_time_s"},
+    {has<&CameraKey::iso>, "iso", "iso"},
+    {has<&CameraKey::iso>, "iso", "iso_follows_s"},
+    {has<&CameraKey::film_right_mm>, "film_shift_mm", "film_shift_mm"}};
 
+/// Reads the keyframes [[key]].
 void read_keys(const ShotTable& shot, ShotRequest& request) {
     bool has_other_lens = shot.is_changed("lens");  // a changed lens replaces those of the keys
     for (const ShotTable& table : shot.tables("key")) {
         table.allow({"time_s", "lens", "focus_m", "focal_length_mm", "f_number", "blades", "blade_rounding",
                      "blade_rotation_deg", "exposure_time_s", "iso", "film_shift_mm", "interpolation"});
-        CameraKey key{.time_s = table.number_wanted("time_s")};
+        CameraKey key{.time_s = table.required_number("time_s")};
         if (table.find("focus_m")) {
             key.focus_m = table.number_or_auto("focus_m", "a number of metres or inf");
             if (!key.focus_m)
@@ -67,16 +71,19 @@ void read_keys(const ShotTable& shot, ShotRequest& request) {
         if (const std::string why = key_time_error(key.time_s, last); !why.empty())
             table.fail(why, table.find("time_s"));
         has_other_lens = has_other_lens || key.lens;
-        for (const StillKey& still : kStill)
-            if (const toml::node* node =
-                    still.has(key) && !(still.is_of_lens && has_other_lens) ? shot.find(still.still) : nullptr)
-                shot.fail('"' + std::string(still.still) + "\" and \"" + still.key + "\" of [[key]] exclude each other",
+        for (const ReplacedKey& replaced : kReplacedKeys)
+            if (const toml::node* node = replaced.has(key) && !(replaced.is_lens_setting && has_other_lens)
+                                             ? shot.find(replaced.top_level_key)
+                                             : nullptr)
+                shot.fail('"' + std::string(replaced.top_level_key) + "\" and \"" + replaced.key +
+                              "\" of [[key]] exclude each other",
                           node);
         request.keys.push_back(key);
         request.key_locations.push_back(table.location());
     }
 }
 
+/// Reads the table [shake].
 void read_shake(const ShotTable& shot, Shake& shake) {
     const toml::node* node = shot.find("shake");
     if (!node) return;
@@ -90,7 +97,7 @@ void read_shake(const ShotTable& shot, Shake& shake) {
     if (const auto seed = table.number("seed")) shake.seed = table.whole<std::uint32_t>("seed", *seed);
     for (const char* key : {"rms_deg", "rms_mm", "corner_hz"})
         if (table.find(key)) table.checked(key, [&] { validate(shake); });
-    if (shake.is_still()) table.fail("[shake] wants a \"file\", \"rms_deg\" or \"rms_mm\"");
+    if (shake.is_still()) table.fail("[shake] needs a \"file\", \"rms_deg\" or \"rms_mm\"");
 }
 
 }  // namespace

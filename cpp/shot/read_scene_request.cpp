@@ -12,13 +12,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDegree = 0.017453292519943295;
+constexpr double kDegree = 0.017453292519943295;  // radians
 
 Color color_of(Vec3d v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// Checks a material or lights as SceneChecks does, so that errors are reported at their lines.
+/// Checks a material, or lights, in a minimal scene by the checks of scenes, so that the caller can report errors at
+/// their lines. Throws InputError.
 void check(const Scene& part) {
     const std::string kWhere = "scene: material 0: ";
     Scene scene = part;
@@ -33,6 +34,7 @@ void check(const Scene& part) {
     }
 }
 
+/// Reads a table [material.NAME].
 class MaterialReader {
 public:
     MaterialReader(const ShotTable& table, const std::string& name) : table_(table) {
@@ -64,7 +66,7 @@ public:
     }
 
 private:
-    /// Allows these keys, and those of both models.
+    /// Rejects keys other than these and those that both material models have.
     void allow(std::vector<std::string_view> keys) const {
         for (const char* common : {"model", "texture", "emission", "emission_texture", "double_sided", "transmission",
                                    "transmission_texture", "ior", "absorption", "thin", "opacity", "opacity_cutoff",
@@ -124,6 +126,7 @@ private:
         number("normal_scale", m_.normal_scale);
     }
 
+    // Set a value if the table has the key.
     void color(const char* key, Color& value) const {
         if (const auto v = table_.number_or_three(key)) value = color_of(*v);
     }
@@ -140,6 +143,7 @@ private:
     Material& m_ = request_.values;
 };
 
+/// Reads a transform to the scene: the first three rows of "matrix" (given by rows), or position, rotation and stretch.
 Affine<double> transform_of(const ShotTable& table) {
     const std::vector<double> m = table.numbers("matrix", 16);
     if (!m.empty()) {
@@ -159,11 +163,12 @@ Affine<double> transform_of(const ShotTable& table) {
     return map;
 }
 
+/// Reads the placement of an object: a transform, or the keyframes [[object.key]].
 AnimatedTransform placement_of(const ShotTable& table) {
     Motion motion;
     for (const ShotTable& key : table.tables("key")) {
         key.allow({"time_s", "position_m", "rotation_deg", "stretch", "matrix"});
-        motion.times_s.push_back(key.number_wanted("time_s"));
+        motion.times_s.push_back(key.required_number("time_s"));
         motion.transforms.push_back(transform_of(key));
     }
     if (motion.times_s.empty()) {
@@ -183,7 +188,7 @@ ObjectRequest read_object(const ShotTable& table) {
     ObjectRequest object;
     object.location = table.location();
     object.file = table.path("file");
-    if (object.file.empty()) table.fail("file is missing: what to put into the scene");
+    if (object.file.empty()) table.fail("file is missing: the scene file to insert");
     object.name = table.name("name");
     if (object.name.empty()) object.name = fs::path(object.file).stem().string();
     object.scale = table.number("scale").value_or(1);
@@ -193,28 +198,31 @@ ObjectRequest read_object(const ShotTable& table) {
     return object;
 }
 
+/// Reads the key "direction", and normalises it.
 Vec3d unit_direction(const ShotTable& table) {
-    const Vec3d d = table.point_wanted("direction");
+    const Vec3d d = table.required_point("direction");
     if (!(length(d) > 0) || !std::isfinite(length(d)))
         table.fail("\"direction\" must be a vector other than zero", table.find("direction"));
     return normalized(d);
 }
 
+/// Reads the strength of a light: one number, or red, green and blue.
 Color strength(const ShotTable& table, const char* key) {
     const auto v = table.number_or_three(key);
     if (!v) table.fail('"' + std::string(key) + "\" is missing: a number, or three");
     return color_of(*v);
 }
 
+/// Reads a table [[light]] and adds the light to the request.
 void read_light(const ShotTable& table, SceneRequest& request) {
     Scene light;
     const std::string type = table.text("type");
     if (type == "point") {
         table.allow({"type", "position_m", "intensity_cd"});
-        light.points.push_back({table.point_wanted("position_m"), strength(table, "intensity_cd")});
+        light.points.push_back({table.required_point("position_m"), strength(table, "intensity_cd")});
     } else if (type == "spot") {
         table.allow({"type", "position_m", "direction", "intensity_cd", "inner_cone_deg", "outer_cone_deg"});
-        light.points.push_back({table.point_wanted("position_m"), strength(table, "intensity_cd"),
+        light.points.push_back({table.required_point("position_m"), strength(table, "intensity_cd"),
                                 unit_direction(table), kDegree * table.number("inner_cone_deg").value_or(0),
                                 kDegree * table.number("outer_cone_deg").value_or(45)});
     } else if (type == "sun") {

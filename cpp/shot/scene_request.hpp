@@ -9,10 +9,10 @@
 
 namespace realcam::shot {
 
-/// Functions that read pictures; the programs supply those of OpenImageIO.
+/// Functions that decode picture files. The programs supply those of image_io.
 struct PictureReaders {
-    io::ImageReader texture;
-    /// `layer`: name of an OpenEXR layer, or empty. `warn`: receives what was tolerated in the file.
+    io::ImageReader texture;  ///< reads a texture
+    /// Reads an environment. `layer`: name of an OpenEXR layer, or empty. `warn`: receives the reader's warnings.
     std::function<Environment(const std::string& path, const std::string& layer,
                               const std::function<void(const std::string&)>& warn)>
         environment;
@@ -20,6 +20,7 @@ struct PictureReaders {
 
 // Additions of a shot file to the scene that it photographs. `location`: position in the shot file, for messages.
 
+/// Table [material.NAME]: replaces the materials of this name.
 struct MaterialRequest {
     std::string name, location;
     Material values;
@@ -27,7 +28,7 @@ struct MaterialRequest {
     std::array<std::string, kMaterialTextures.size()> textures;
 };
 
-/// Another scene file that is placed in the scene.
+/// Table [[object]]: another scene file that is placed in the scene.
 struct ObjectRequest {
     std::string file, name, location;
     double scale = 1;  ///< metres per unit of the file
@@ -35,6 +36,7 @@ struct ObjectRequest {
     std::string material;  ///< replaces all materials of the file; empty: keeps them
 };
 
+/// All additions of a shot file to its scene.
 struct SceneRequest {
     std::vector<MaterialRequest> materials;
     std::vector<ObjectRequest> objects;

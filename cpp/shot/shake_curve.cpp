@@ -16,10 +16,11 @@
 namespace realcam::shot {
 namespace {
 
-constexpr std::size_t kMostRows = 1 << 20;
+constexpr std::size_t kMaxRows = 1 << 20;
 
 const std::vector<std::string> kColumns = {"time_s", "x_deg", "y_deg", "z_deg", "x_m", "y_m", "z_m"};
 
+/// Splits a line at commas, and trims the cells.
 std::vector<std::string_view> cells_of(std::string_view line) {
     std::vector<std::string_view> cells;
     for (std::size_t begin = 0; begin <= line.size();) {
@@ -30,6 +31,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
     return cells;
 }
 
+/// Reads the lines of a shake curve. Empty lines and lines that begin with # are ignored.
 class CurveReader {
 public:
     explicit CurveReader(const std::string& path) : path_(path) {}
@@ -47,7 +49,7 @@ public:
                 read_columns(content);
                 continue;
             }
-            if (curve.size() == kMostRows) fail("has more than 1048576 rows");
+            if (curve.size() == kMaxRows) fail("has more than " + std::to_string(kMaxRows) + " rows");
             curve.push_back(row_of(content));
             if (const std::string why =
                     key_time_error(curve.back().time_s, curve.size() > 1 ? &curve[curve.size() - 2].time_s : nullptr);
@@ -60,7 +62,7 @@ public:
             }
         }
         if (curve.empty())
-            throw InputError(path_ + ": holds no curve: a line with names of columns and rows of numbers");
+            throw InputError(path_ + ": has no curve; expected a line with names of columns, and rows of numbers");
         return curve;
     }
 
@@ -94,7 +96,7 @@ private:
             const char* const end = cells[i].data() + cells[i].size();
             const auto [stop, error] = std::from_chars(cells[i].data(), end, value);
             if (error != std::errc() || stop != end || !std::isfinite(value))
-                fail(io::in_quotes(cells[i]) + " is no finite number");
+                fail(io::in_quotes(cells[i]) + " is not a finite number");
         }
         return {values[0], {values[1], values[2], values[3]}, {values[4], values[5], values[6]}};
     }

@@ -23,26 +23,30 @@
 namespace realcam::shot {
 namespace {
 
+/// Replaces the diffuse textures of all materials by a picture.
 void add_texture(Scene& scene, const std::string& path, const PictureReaders& readers) {
     Texture texture = read_texture(path, io::TextureUse::colour, readers);
-    if (scene.uvs.empty()) throw InputError(path + ": the scene has no texture coordinates to lay a texture by");
+    if (scene.uvs.empty()) throw InputError(path + ": the scene has no texture coordinates, which a texture needs");
     const auto index = static_cast<std::int32_t>(scene.textures.size());
     scene.textures.push_back(std::move(texture));
     for (Material& material : scene.materials) material.diffuse_texture = {index, {1, 0, 0}, {0, 1, 0}};
 }
 
-void tell(const ShotRequest& request, const std::string& notice) {
+/// Passes a warning to the lens reader's function for warnings.
+void warn(const ShotRequest& request, const std::string& notice) {
     if (request.lens_options.warn) request.lens_options.warn(notice);
 }
 
+/// Rings that set only the blades of the request.
 Rings blades_of(const ShotRequest& request) {
     return {{}, request.blades, request.blade_rounding, request.blade_rotation_deg, {}, false, {}};
 }
 
-/// Notice about a lens that is made for a film smaller than the camera's; otherwise empty.
+/// Notice about a lens whose design film is smaller than the camera's film; otherwise empty.
 std::string film_notice(const LensSystem& lens, const Film& film) {
-    const double made_for = hypotenuse(lens.film_width, lens.film_height);
-    if (made_for >= 0.99 * hypotenuse(film.width_mm, film.height_mm)) return "";
+    const double design_diagonal = hypotenuse(lens.film_width, lens.film_height);
+    constexpr double kTolerance = 0.99;  // of the diagonal
+    if (design_diagonal >= kTolerance * hypotenuse(film.width_mm, film.height_mm)) return "";
     char text[160];
     std::snprintf(text, sizeof text,
                   "the lens is made for a film of %.4g x %.4g mm, and the shot has %.4g x %.4g mm; film_mm sets "
@@ -51,7 +55,7 @@ std::string film_notice(const LensSystem& lens, const Film& film) {
     return text;
 }
 
-/// Runs work on a key of a file; errors begin with the key's position.
+/// Runs `work` on a keyframe of a file; its errors begin with the keyframe's position in the file.
 template <class Work>
 void with_location(const std::string& location, Work&& work) {
     try {
@@ -64,23 +68,24 @@ void with_location(const std::string& location, Work&& work) {
     }
 }
 
-/// The lens with the rings of a shot. A lens that replaces the shot's own may be slower than the shot's f-number.
+/// The lens with zoom, f-number and blades of the request. If an option has replaced the shot file's lens, and the lens
+/// is slower than the shot file's f-number, it is wide open, with a warning.
 LensSystem with_shot_rings(const ShotRequest& request, const LensSystem& lens) {
     Rings rings = blades_of(request);
     if (!request.zoom.empty()) rings.zoom = request.zoom;
     if (request.focal_length_mm) rings.zoom = *request.focal_length_mm;
     rings.f_number = request.f_number;
     rings.opens_as_far_as_it_can = request.f_number_is_of_other_lens;
-    LensSystem set = with_rings(lens, rings);
-    if (!request.f_number_is_of_other_lens) return set;
-    const double opens_to = f_number_at_infinity(set);
+    LensSystem result = with_rings(lens, rings);
+    if (!request.f_number_is_of_other_lens) return result;
+    const double opens_to = f_number_at_infinity(result);
     if (*rings.f_number < (1 - kEngravingError) * opens_to)
-        tell(request, "the lens opens to f/" + number_text(opens_to, 3) + ", and the shot has f/" +
+        warn(request, "the lens opens to f/" + number_text(opens_to, 3) + ", and the shot has f/" +
                           number_text(*rings.f_number, 3) + ": it is wide open");
-    return set;
+    return result;
 }
 
-/// Throws InputError if the camera cannot take the state of a key.
+/// Throws InputError, with the position in the file, if the camera cannot assume the state of a keyframe.
 void check_keys(const ShotRequest& request, const Camera& camera) {
     for (std::size_t i = 0; i < request.keys.size(); ++i)
         with_location(request.key_locations[i], [&] {
@@ -105,16 +110,16 @@ void check_blades(const ShotRequest& request) {
 void resolve_noise_goal(ShotRequest& request) {
     if (request.sampling == Sampling::counted) {
         if (!request.noise.says_nothing())
-            throw InputError("noise, noise_codes, seconds and max_spp belong to spp \"auto\"");
+            throw InputError("noise, noise_codes, seconds and max_spp need spp \"auto\"");
         request.settings.noise.reset();
         return;
     }
-    NoiseRequest wanted = request.noise;
-    if (request.sampling == Sampling::unsaid && !wanted.noise && !wanted.noise_codes) {
-        wanted.noise_codes = request.denoises ? kUnsaidNoiseToDenoise : kUnsaidGoal.noise;
-        if (!wanted.seconds) wanted.seconds = kUnsaidGoal.seconds;
+    NoiseRequest noise = request.noise;
+    if (request.sampling == Sampling::unsaid && !noise.noise && !noise.noise_codes) {
+        noise.noise_codes = request.denoises ? kDefaultNoiseBeforeDenoising_codes : kDefaultNoiseGoal.noise;
+        if (!noise.seconds) noise.seconds = kDefaultNoiseGoal.seconds;
     }
-    request.settings.noise = goal_of(wanted);
+    request.settings.noise = goal_of(noise);
 }
 
 void resolve_keys(ShotRequest& request) {
@@ -137,7 +142,7 @@ Camera camera_of(const ShotRequest& request) {
     camera.lens = with_shot_rings(request, camera.lens);
     camera.film = default_film(camera.lens, request.film_mm, request.resolution);
     if (request.film_is_of_other_lens)
-        if (const std::string notice = film_notice(camera.lens, camera.film); !notice.empty()) tell(request, notice);
+        if (const std::string notice = film_notice(camera.lens, camera.film); !notice.empty()) warn(request, notice);
     camera.film.shift_mm = {request.film_shift_mm[0], request.film_shift_mm[1]};
     camera.model = request.model;
     camera.iso = request.iso;
@@ -158,7 +163,7 @@ Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, con
 
 Assembly scene_of(const ShotRequest& request, Assembly scene, const PictureReaders& readers,
                   const KeepGoing& keep_going) {
-    scene = with_request(std::move(scene), request.additions, readers, keep_going);
+    scene = with_additions(std::move(scene), request.additions, readers, keep_going);
     if (request.texture.empty() && !request.chooses_environment()) return scene;
     return with_static_geometry(std::move(scene), [&](Scene& changed) {
         if (!request.texture.empty()) add_texture(changed, request.texture, readers);
@@ -228,9 +233,10 @@ std::vector<int> frames_to_plan(const std::vector<int>& numbers, const Camera& c
     std::vector<int> chosen;
     std::optional<LensSystem> lens;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-        std::optional<LensSystem> now = key_at(keys, frame_opens_s(camera, numbers[i], frames_per_second)).lens;
-        if (i == 0 || i == numbers.size() / 2 || i + 1 == numbers.size() || now != lens) chosen.push_back(numbers[i]);
-        lens = std::move(now);
+        std::optional<LensSystem> frame_lens = key_at(keys, frame_opens_s(camera, numbers[i], frames_per_second)).lens;
+        if (i == 0 || i == numbers.size() / 2 || i + 1 == numbers.size() || frame_lens != lens)
+            chosen.push_back(numbers[i]);
+        lens = std::move(frame_lens);
     }
     return chosen;
 }
@@ -250,9 +256,9 @@ FollowedIso::FollowedIso(Session& session, const Assembly& scene, Camera camera,
       smoothing_s_(smoothing_s) {}
 
 double FollowedIso::at(int number, const Progress& progress) {
-    constexpr double kOldest = 5;  // times the smoothing: older frames have less than a hundredth of the weight
+    constexpr double kMaxAge = 5;  // in units of the smoothing time: older frames have weights below 1%
     const double frames = smoothing_s_ * frames_per_second_;
-    const int first = std::max(std::min(number, 1), number - static_cast<int>(std::min(kOldest * frames, 1e6)));
+    const int first = std::max(std::min(number, 1), number - static_cast<int>(std::min(kMaxAge * frames, 1e6)));
     double sum = 0, weights = 0;
     for (int n = first; n <= number; ++n) {
         const double weight = n == number ? 1 : std::exp((n - number) / frames);

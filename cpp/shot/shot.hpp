@@ -15,28 +15,28 @@
 
 namespace realcam::shot {
 
-/// Time at which the shutter of a frame of a film opens. Frame 1 opens at the camera's own time.
+/// Time in s at which the shutter of a video's frame opens. For frame 1 this is the camera's own opening time.
 double frame_opens_s(const Camera& camera, int number, double frames_per_second);
 
-/// Camera for a picture that begins at a time, with keyed rings and hand shake. Rings and dials keep their values from
-/// when the shutter opens, and the shake is that of the exposure. Throws InputError.
+/// Camera for a picture whose shutter opens at `opens_s`: with the rings and dials of the keyframes at that time, and
+/// with the hand shake during the exposure. Throws InputError.
 Camera camera_at(Camera camera, const std::vector<CameraKey>& keys, const Shake& shake, double opens_s);
 
-/// Frames of a film from which its effects are planned: the first, the middle and the last one, and the first one after
-/// each cut to another lens. numbers: of all frames, at least one.
+/// Frames of a video from which its effects are planned: the first, the middle and the last one, and the first one
+/// after each cut to another lens. `numbers`: of all frames, at least one.
 std::vector<int> frames_to_plan(const std::vector<int>& numbers, const Camera& camera,
                                 const std::vector<CameraKey>& keys, double frames_per_second);
 
-/// Seed of a frame, different for all frames of a shot. Shots with adjacent seeds do not systematically share frame
-/// seeds.
+/// Random seed of a frame, different for all frames of a shot. `seed`: of the shot. Shots with adjacent seeds do not
+/// systematically share frame seeds.
 std::uint32_t frame_seed(std::uint32_t seed, int number);
 
-/// ISO numbers of frames whose exposure follows the meter, as a camera's does: a mean in stops over the metered values
-/// up to the frame, with weights that fall with exp(-age / smoothing). Frames before the first do not count. The result
-/// depends on the frame alone, not on earlier calls.
+/// Auto-ISO of a video: the ISO number of a frame is the mean, in stops, of the metered ISO numbers of this and earlier
+/// frames, with weights exp(-age / smoothing_s). Frames before frame 1 do not count. The result depends on the frame
+/// alone, not on earlier calls.
 class FollowedIso {
 public:
-    /// Keeps references: session and scene have to outlive it.
+    /// `session` and `scene` must outlive this object.
     FollowedIso(Session& session, const Assembly& scene, Camera camera, std::vector<CameraKey> keys,
                 RenderSettings settings, double frames_per_second, double smoothing_s);
 
@@ -44,6 +44,7 @@ public:
     double at(int number, const Progress& progress);
 
 private:
+    /// ISO number with which a frame alone would be correctly exposed.
     double metered(int number, const Progress& progress);
 
     Session& session_;
@@ -52,7 +53,7 @@ private:
     std::vector<CameraKey> keys_;
     RenderSettings settings_;
     double frames_per_second_, smoothing_s_;
-    std::map<int, double> metered_;
+    std::map<int, double> metered_;  ///< results of metered, by frame
 };
 
 }  // namespace realcam::shot
@@ -67,24 +68,25 @@ namespace realcam::shot {
 struct Shot {
     Assembly scene;
     Camera camera;
-    std::optional<SceneCamera> scene_camera;  ///< camera of the scene's file whose view was taken
+    std::optional<SceneCamera> scene_camera;  ///< camera of the scene file whose view is used; std::nullopt: none
     bool has_daylight = false;  ///< added because the scene has no light
     bool is_metered = false;  ///< true if the exposure time was metered
 };
 
-/// Reads the lenses of the keys, with the blades of the request. If keys zoom the request's lens, they get its
-/// f-number, which the lens need not reach at its initial zoom position. Throws InputError and LensFileError.
+/// Reads the lenses of the keyframes, and gives them the blades of the request. If keyframes zoom the request's lens,
+/// its f-number is moved to the first keyframe, because the lens need not reach it at its initial zoom position. Throws
+/// InputError and LensFileError.
 void resolve_keys(ShotRequest& request);
 
 /// Lens, film and dials of a request after resolve_keys, before the camera is placed. Throws InputError and
 /// LensFileError for all errors that can be found before the scene is read, which may take long.
 Camera camera_of(const ShotRequest& request);
 
-/// Reads the scene of a request, with the environment of the request. Throws InputError, SceneFileError and
+/// Reads the scene of a request, with its additions, texture and environment. Throws InputError, SceneFileError and
 /// ImageFileError, and Cancelled if `keep_going` returns false.
 Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, const KeepGoing& keep_going = {});
 
-/// scene_of for a scene in memory, in place of the request's file.
+/// scene_of for a scene in memory instead of the request's file.
 Assembly scene_of(const ShotRequest& request, Assembly scene, const PictureReaders& readers,
                   const KeepGoing& keep_going = {});
 
@@ -92,7 +94,8 @@ Assembly scene_of(const ShotRequest& request, Assembly scene, const PictureReade
 /// requested environment counts as light even if it is black. Throws InputError.
 Shot set_up(const ShotRequest& request, Camera camera, Assembly scene);
 
-/// Notice on the scene's camera whose view a shot takes, and on the lens's different field; empty for other views.
+/// Notice that names the scene's camera whose view a shot uses, and compares its field of view with the lens's; empty
+/// for other views.
 std::string view_notice(const Shot& shot);
 
 /// Meters the exposure time, unless the request has one, by a quick picture with the settings of the request (see

@@ -24,8 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFormat = 1;
-/// A shot file has some lines; anything larger is another kind of file.
-constexpr std::uintmax_t kMostBytes = 1 << 20;
+/// Largest size of a shot file, which has some lines; a larger file is of another kind.
+constexpr std::uintmax_t kMaxBytes = 1 << 20;
 
 /// Keys that are not in shot_keys(): tables, and values that are read together with others.
 constexpr std::string_view kTables[] = {"format", "scene", "object", "material", "light", "pose", "key", "shake"};
@@ -36,58 +36,59 @@ toml::array array_of(const std::vector<double>& values) {
     return array;
 }
 
-/// Passes the value of a word to `take`, unless the word is itself the value. Returns false if the word is invalid.
-template <class Take>
-bool take_word(Syntax syntax, const std::string& word, const Take& take) {
-    const auto take_numbers = [&](char separator, std::size_t count) {
+/// Parses an option's text by its syntax, and passes the value to `store`, unless the text is itself the value. Returns
+/// false if the text is invalid.
+template <class Store>
+bool parse_option_text(Syntax syntax, const std::string& word, const Store& store) {
+    const auto store_numbers = [&](char separator, std::size_t count) {
         const auto values = io::numbers_in(word, separator, count);
-        if (values) take(array_of(*values));
+        if (values) store(array_of(*values));
         return values.has_value();
     };
-    const auto take_number = [&](bool may_be_infinite) {
+    const auto store_number = [&](bool may_be_infinite) {
         const auto value = io::number_in(word);
         const auto fraction = value ? std::nullopt : io::numbers_in(word, '/', 2);
-        if (fraction && (*fraction)[1] != 0) return take((*fraction)[0] / (*fraction)[1]), true;
+        if (fraction && (*fraction)[1] != 0) return store((*fraction)[0] / (*fraction)[1]), true;
         if (!value || (std::isinf(*value) && !may_be_infinite)) return false;
-        return take(*value), true;
+        return store(*value), true;
     };
-    const auto take_whole = [&] {
+    const auto store_whole = [&] {
         std::int64_t value = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
         if (error != std::errc() || end != word.data() + word.size()) return false;
-        return take(value), true;
+        return store(value), true;
     };
     switch (syntax) {
         case Syntax::text: return true;
-        case Syntax::number: return take_number(false);
-        case Syntax::number_or_auto: return word == "auto" || take_number(false);
-        case Syntax::distance_or_auto: return word == "auto" || take_number(true);
-        case Syntax::whole: return take_whole();
-        case Syntax::whole_or_auto: return word == "auto" || take_whole();
-        case Syntax::number_or_file: return take_number(true) || true;
-        case Syntax::three_numbers: return take_numbers(',', 3);
-        case Syntax::two_numbers: return take_numbers(',', 2);
-        case Syntax::size: return take_numbers('x', 2);
+        case Syntax::number: return store_number(false);
+        case Syntax::number_or_auto: return word == "auto" || store_number(false);
+        case Syntax::distance_or_auto: return word == "auto" || store_number(true);
+        case Syntax::whole: return store_whole();
+        case Syntax::whole_or_auto: return word == "auto" || store_whole();
+        case Syntax::number_or_file: return store_number(true) || true;
+        case Syntax::three_numbers: return store_numbers(',', 3);
+        case Syntax::two_numbers: return store_numbers(',', 2);
+        case Syntax::size: return store_numbers('x', 2);
         case Syntax::names: {
             toml::array names;
             std::istringstream list(word);
             for (std::string name; std::getline(list >> std::ws, name, ',');) names.push_back(name);
-            take(names);
+            store(names);
             return true;
         }
     }
     return false;
 }
 
-/// Parses the values of a table that are single words, as on the command line. `shot`: the same table, for messages.
-/// Throws InputError.
-void read_words(toml::table& table, const ShotTable& shot) {
+/// Replaces values of a table that are texts, as on the command line, by their parsed values. `shot`: the same table,
+/// for messages. Throws InputError.
+void parse_option_texts(toml::table& table, const ShotTable& shot) {
     for (const ShotKey& key : shot_keys()) {
         const toml::node* const node = table.get(key.name);
         if (!node || !node->is_string()) continue;
         const std::string word = *node->value<std::string>();
-        const auto take = [&](const auto& value) { table.insert_or_assign(key.name, value); };
-        if (!take_word(key.syntax, word, take))
+        const auto store = [&](const auto& value) { table.insert_or_assign(key.name, value); };
+        if (!parse_option_text(key.syntax, word, store))
             shot.fail(shot.shown(key.name) + " must be " + key.wanted + "; it is " + io::in_quotes(word), node);
     }
 }
@@ -113,11 +114,12 @@ public:
     }
 
 private:
+    /// Reads the tables [[pose]], the motion of the camera.
     void read_motion(ShotRequest& shot) const {
         for (const ShotTable& key : table_.tables("pose")) {
             key.allow({"time_s", "position_m", "look_at_m", "up"});
-            shot.motion.push_back({key.number_wanted("time_s"),
-                                   {key.point_wanted("position_m"), key.point_wanted("look_at_m"),
+            shot.motion.push_back({key.required_number("time_s"),
+                                   {key.required_point("position_m"), key.required_point("look_at_m"),
                                     key.point("up").value_or(shot.view.up)}});
         }
         table_.checked("pose", [&] {
@@ -125,7 +127,7 @@ private:
         });
     }
 
-    /// Throws InputError if keys contradict each other.
+    /// Sets the noise goal, and throws InputError if values are invalid or contradict each other.
     void check(ShotRequest& shot) const {
         exclude("environment", {"environment_cd_m2"});
         exclude("zoom", {"focal_length_mm"});
@@ -152,6 +154,7 @@ private:
         table_.checked(shot.settings.clamp >= 0 ? "spp" : "clamp_cd_m2", [&] { validate(shot.settings); });
     }
 
+    /// Throws InputError if the table has `key` and one of `others`.
     void exclude(const char* key, std::initializer_list<const char*> others) const {
         for (const char* const other : others)
             if (const toml::node* const node = table_.find(key) ? table_.find(other) : nullptr)
@@ -161,13 +164,14 @@ private:
     ShotTable table_;
 };
 
-void allow_known(const ShotTable& table) {
+/// Throws InputError for a key that shot files do not have.
+void reject_unknown_keys(const ShotTable& table) {
     std::vector<std::string_view> names(std::begin(kTables), std::end(kTables));
     for (const ShotKey& key : shot_keys()) names.emplace_back(key.name);
     table.allow(names);
 }
 
-/// Keys that a key replaces.
+/// Keys whose values a change of this key removes.
 std::vector<std::string_view> replaced_by(std::string_view name) {
     if (name == "pose") return {"camera", "position_m", "look_at_m"};
     for (const ShotKey& key : shot_keys())
@@ -175,34 +179,36 @@ std::vector<std::string_view> replaced_by(std::string_view name) {
     return {};
 }
 
+/// Name of a key in messages about the command line: its option, or else the key in quotes.
 std::string option_of(std::string_view name) {
     for (const ShotKey& key : shot_keys())
         if (key.name == name && key.option) return key.option;
     return '"' + std::string(name) + '"';
 }
 
-/// Applies the changes to a shot. They have no lines in messages: toml++ copies a node without its source.
-void change(toml::table& shot, const toml::table& changes) {
-    const auto forget = [&](std::string_view key) {
+/// Applies changes to a shot file's table. Changed values have no lines in messages: toml++ copies a node without its
+/// source.
+void apply_changes(toml::table& shot, const toml::table& changes) {
+    const auto erase_key = [&](std::string_view key) {
         shot.erase(key);
         if (toml::array* const keys = shot["key"].as_array())
-            for (toml::node& of_time : *keys)
-                if (toml::table* const table = of_time.as_table()) table->erase(key);
+            for (toml::node& keyframe : *keys)
+                if (toml::table* const table = keyframe.as_table()) table->erase(key);
     };
     for (const auto& [key, value] : changes) {
-        forget(key.str());
+        erase_key(key.str());
         for (const std::string_view other : replaced_by(key.str()))
-            if (!changes.contains(other)) forget(other);
+            if (!changes.contains(other)) erase_key(other);
     }
     if (toml::array* const keys = shot["key"].as_array(); keys && !changes.contains("key")) {
-        const auto says_nothing = [](const toml::node& key) {
+        const auto has_no_values = [](const toml::node& key) {
             const toml::table* const table = key.as_table();
             return table && std::ranges::all_of(*table, [](const auto& entry) {
                        return entry.first == "time_s" || entry.first == "interpolation";
                    });
         };
         for (auto key = keys->begin(); key != keys->end();)
-            key = says_nothing(*key) ? keys->erase(key) : std::next(key);
+            key = has_no_values(*key) ? keys->erase(key) : std::next(key);
         if (keys->empty()) shot.erase("key");
     }
     for (const auto& [key, value] : changes) shot.insert_or_assign(key, value);
@@ -211,9 +217,9 @@ void change(toml::table& shot, const toml::table& changes) {
 }  // namespace
 
 void check_environment(Vec3f v) {
-    constexpr float kBrightest = 1e20f;  // same limit as in scene_checks.hpp
-    const auto good = [](float c) { return c >= 0 && c <= kBrightest; };
-    if (!good(v.x) || !good(v.y) || !good(v.z))
+    constexpr float kMaxRadiance_cd_m2 = 1e20f;  // same limit as in scene_checks.hpp
+    const auto is_valid = [](float c) { return c >= 0 && c <= kMaxRadiance_cd_m2; };
+    if (!is_valid(v.x) || !is_valid(v.y) || !is_valid(v.z))
         throw InputError("an environment's radiance must lie between 0 and 1e20 cd/m^2");
 }
 
@@ -227,10 +233,10 @@ ShotRequest parse_shot(std::string_view text, const std::string& path, const Sho
     if (!changes.toml.empty()) changed.values = io::parse_toml(changes.toml, path, ShotTable::fail_at);
     for (const auto& [key, word] : changes.options) changed.values.insert_or_assign(key->name, word);
     if (!changes.options.empty()) changed.name = option_of;
-    if (!changed.values.empty()) change(table, changed.values);
+    if (!changed.values.empty()) apply_changes(table, changed.values);
     const ShotTable shown(table, path, &changed);
-    allow_known(shown);
-    read_words(table, shown);
+    reject_unknown_keys(shown);
+    parse_option_texts(table, shown);
     return ShotReader(table, path, changed).read();
 }
 
@@ -244,7 +250,7 @@ ShotRequest read_shot(const std::string& path, const ShotChanges& changes) {
     if (!is_shot_file(path) && !fs::is_directory(path)) return shot_of_scene(path, changes);
     const std::string why = io::why_unreadable(path);
     if (!why.empty()) throw InputError(path + ": " + why);
-    if (fs::file_size(path) > kMostBytes) throw InputError(path + ": is too large for a shot file");
+    if (fs::file_size(path) > kMaxBytes) throw InputError(path + ": is too large for a shot file");
     std::ifstream stream(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     return parse_shot(text, path, changes);

@@ -8,14 +8,15 @@
 
 namespace realcam::shot {
 
-/// True for a shot file, false for a scene file.
+/// True if the path is that of a shot file (.toml), false for a scene file.
 bool is_shot_file(const std::string& path);
 
-/// Values that replace those of a shot file, and those that they exclude, also in its tables [[key]]. Their paths are
-/// relative to the current folder.
+/// Values that replace those of a shot file. They also remove the values that they exclude (ShotKey::replaces), in the
+/// file's tables [[key]] too. Their paths are relative to the current folder.
 struct ShotChanges {
     std::string toml;  ///< keys with their values, as TOML
-    std::vector<std::pair<const ShotKey*, std::string>> options;  ///< options of the command line, with their words
+    std::vector<std::pair<const ShotKey*, std::string>>
+        options;  ///< options of the command line, with the texts of their values
 };
 
 /// Reads the request of a shot file (format 1, described in docs/shot-files.md), whose paths are relative to it, or of

@@ -14,12 +14,13 @@ using Table = const ShotTable&;
 using Key = const ShotKey&;
 using Request = ShotRequest&;
 
-/// Returns a member of a request, or of one of its members.
+/// Returns the member of a request at the end of a path of pointers to members.
 template <auto... path>
 auto& at(Request r) {
     return (r.*....*path);
 }
 
+/// Type of a value, or of the value in a std::optional.
 template <class Value>
 struct ValueOf {
     using type = Value;
@@ -28,6 +29,9 @@ template <class Value>
 struct ValueOf<std::optional<Value>> {
     using type = Value;
 };
+
+// Functions to_...: ShotKey::read of keys of a kind. They store the value of a key in the request, in the member at
+// `path` if they have this parameter.
 
 template <auto... path>
 void to_number(Table t, Key key, Request r) {
@@ -68,7 +72,7 @@ void to_pair(Table t, Key key, Request r) {
     at<path...>(r) = {v[0], v[1]};
 }
 
-/// Runs work on the names that a key lists; errors begin with the key.
+/// Runs `work`, which parses the names that a key lists; its errors begin with the key.
 template <class Work>
 void of_names(Table t, Key key, const Work& work) {
     try {
@@ -90,6 +94,8 @@ void to_noise(Table t, Key key, Request r) {
     t.checked(key.name, [&] { goal_of(r.noise); });
 }
 
+/// Reads the lens. If it replaces that of the shot file, marks the f-number and film size of the file as those of the
+/// former lens.
 void to_lens(Table t, Key, Request r) {
     if (const std::string name = lens_of(t); !name.empty()) r.lens = name;
     if (!t.is_changed("lens")) return;
@@ -102,7 +108,8 @@ void to_resolution(Table t, Key key, Request r) {
     r.resolution = {t.whole(key.name, v[0]), t.whole(key.name, v[1])};
 }
 
-/// On the command line a word that names no file may be a misspelt number.
+/// Reads a radiance or the name of a picture. On the command line, a text that is neither a number nor the name of an
+/// existing file is an error, because it may be a misspelt number.
 void to_environment(Table t, Key key, Request r) {
     if (!t.find(key.name)->is_number()) {
         r.environment_file = t.path(key.name);
@@ -117,6 +124,7 @@ void to_environment(Table t, Key key, Request r) {
     r.environment_cd_m2 = {radiance, radiance, radiance};
 }
 
+/// Reads the number of samples or "auto", for which the noise goal applies.
 void to_spp(Table t, Key key, Request r) {
     const std::optional<double> spp = t.number_or_auto(key.name, key.wanted);
     r.sampling = spp ? Sampling::counted : Sampling::by_noise;
@@ -195,20 +203,20 @@ std::vector<ShotKey> all_keys() {
          "Focal length of a zoom lens, between those of its positions", "that of its position", {"zoom"},
          to_number<&R::focal_length_mm>},
         {"film_mm", "--film", kCamera, "WxH", size, "a width and a height in mm, such as 36x24",
-         "Film in mm", "the lens's, in the shape of the resolution", {}, to_pair<&R::film_mm>},
+         "Size of the film in mm", "the lens's, with the aspect ratio of the resolution", {}, to_pair<&R::film_mm>},
         {"film_shift_mm", "--film-shift", kCamera, "X,Y", two_numbers, "two lengths in mm, such as 0,8",
          "Offset of the film's centre from the optical axis, in mm to the right and up in the picture", "0,0", {},
          to_pair<&R::film_shift_mm>},
         {"resolution", "--resolution", kCamera, "WxH", size, "a width and a height in pixels, such as 960x640",
-         "Pixels", "960 along the longer side", {}, to_resolution},
+         "Number of pixels", "960 along the longer side", {}, to_resolution},
         {"camera", "--camera", kCamera, "NAME", text, "the name of a camera of the scene, or none,",
          "glTF camera whose position, direction and motion are used, by the name of its node; or none",
          "the first, without position and direction", {"position_m", "look_at_m", "pose"}, to_text<&R::view, &V::camera>},
         {"position_m", "--position", kCamera, "X,Y,Z", three_numbers, "three numbers, such as 0,1.5,-2",
-         "Position of the film's centre, in metres", "in front of the scene, which fills the film: docs/scenes.md",
+         "Position of the film's centre, in metres", "in front of the scene, so that it fills the film: docs/scenes.md",
          {"camera", "pose"}, to_point<&R::view, &V::position_m>},
         {"look_at_m", "--look-at", kCamera, "X,Y,Z", three_numbers, "three numbers, such as 0,1.5,-2",
-         "Point at the centre of the picture", "middle of the scene", {"camera", "pose"},
+         "Point at the centre of the picture, in metres", "centre of the scene", {"camera", "pose"},
          to_point<&R::view, &V::look_at_m>},
         {"up", "--up", kCamera, "X,Y,Z", three_numbers, "three numbers, such as 0,1,0",
          "Direction that is up in the picture", "0,1,0", {}, to_point<&R::view, &V::up>},
@@ -220,12 +228,12 @@ std::vector<ShotKey> all_keys() {
         {"blades", "--blades", kCamera, "N", whole, "a whole number",
          "Number of diaphragm blades, 3 to 24, or 0 for a round opening", "the lens's", {}, to_whole<&R::blades>},
         {"blade_rounding", "--blade-rounding", kCamera, "SHARE", number, kNumber,
-         "0: straight edges; 1: the opening is a circle", "the lens's", {}, to_number<&R::blade_rounding>},
+         "Curvature of the blades' edges, from 0 (straight) to 1 (circular opening)", "the lens's", {}, to_number<&R::blade_rounding>},
         {"blade_rotation_deg", "--blade-rotation", kCamera, "DEGREES", number, kNumber,
-         "Degrees by which the blades are turned about the axis", "the lens's", {}, to_number<&R::blade_rotation_deg>},
+         "Rotation of the blades about the axis, in degrees", "the lens's", {}, to_number<&R::blade_rotation_deg>},
         {"exposure_time_s", "--exposure-time", kCamera, "TIME", number_or_auto,
          "a number of seconds, such as 0.5 or 1/125, or auto",
-         "Seconds, such as 1/125, or auto", "auto: the average lands on middle grey", {},
+         "Exposure time in seconds, such as 1/125, or auto", "auto: the average is middle grey", {},
          to_number_or_auto<&R::exposure_time_s>},
         {"shutter_opens_s", "--shutter-opens", kCamera, "SECONDS", number, kNumber,
          "Time at which the shutter opens, in seconds of the scene's time",
@@ -234,21 +242,21 @@ std::vector<ShotKey> all_keys() {
          "Readout time of a rolling shutter, in seconds from the top row of pixels to the bottom", "0", {},
          to_number<&R::shutter, &Shutter::readout_time_s>},
         {"iso_follows_s", nullptr, kCamera, "SECONDS", number, kNumber,
-         "In a film, the ISO number follows the meter, smoothed over this many seconds", "it stays", {},
+         "In a video, the ISO number follows the meter, smoothed over this many seconds", "constant ISO number", {},
          to_iso_follows},
-        {"iso", "--iso", kCamera, "ISO", number, kNumber, "Sensitivity", "100", {"iso_follows_s"},
+        {"iso", "--iso", kCamera, "ISO", number, kNumber, "Sensitivity as an ISO number", "100", {"iso_follows_s"},
          to_number<&R::iso>},
-        {"model", "--model", kCamera, "MODEL", text, kModelNames, kModelNames, "full", {},
+        {"model", "--model", kCamera, "MODEL", text, kModelNames, std::string("Camera model: ") + kModelNames, "full", {},
          to_named<model_named, &R::model>},
         {"scale", "--scale", kScene, "METRES", number, kNumber, "Metres per unit of the scene's file", "1", {},
          to_number<&R::scale>},
-        {"texture", nullptr, kScene, "FILE", text, "a picture", "A picture for all materials",
+        {"texture", nullptr, kScene, "FILE", text, "a picture", "Picture that textures all materials",
          "the scene's own", {}, to_file<&R::texture>},
         {"environment", "--environment", kScene, "CD_M2|FILE", number_or_file, "a picture, or a number of cd/m^2",
-         "Light from all directions: cd/m^2, or a latitude-longitude picture",
+         "Environment light: a uniform radiance in cd/m^2, or a latitude-longitude picture",
          "the scene's light; daylight if it has none", {"environment_cd_m2", "environment_layer"}, to_environment},
         {"environment_cd_m2", nullptr, kScene, "CD_M2", number, "a number or three",
-         "Uniform light from all directions, grey or red, green and blue", "environment",
+         "Radiance of a uniform environment in cd/m^2: grey, or red, green and blue", "environment",
          {"environment", "environment_layer"},
          [](Table t, Key key, Request r) { r.environment_cd_m2 = static_cast<Vec3f>(*t.number_or_three(key.name)); }},
         {"environment_layer", "--environment-layer", kScene, "NAME", text, "a layer's name",
@@ -258,11 +266,11 @@ std::vector<ShotKey> all_keys() {
          "Factor by which the environment's light is multiplied", "1", {},
          to_number<&R::environment_change, &EnvironmentChange::scale>},
         {"environment_rotation_deg", "--environment-rotation", kScene, "DEGREES", number, kNumber,
-         "Degrees by which the environment is turned about the vertical, counterclockwise from above", "0", {},
+         "Rotation of the environment about the vertical in degrees, counterclockwise as seen from above", "0", {},
          to_number<&R::environment_change, &EnvironmentChange::rotation_deg>},
         {"spp", "--spp", kPicture, "N", whole_or_auto, "a whole number or auto",
-         "Samples per pixel, or auto: as many as the noise needs, by tile of the film, until it is 1 code",
-         "until it is 2 codes, for 60 seconds at most", {"noise", "noise_codes", "seconds", "max_spp"}, to_spp},
+         "Samples per pixel, or auto: by tile of the film, until the noise goal is reached, by default 1 code",
+         "until the noise is 2 codes, for 60 seconds at most", {"noise", "noise_codes", "seconds", "max_spp"}, to_spp},
         {"noise", "--noise", kPicture, "SHARE", number, kNumber,
          "Noise goal, unless spp is a number: relative to a tile's light, such as 0.01", "", {"noise_codes", "spp"},
          to_noise<to_number<&R::noise, &NoiseRequest::noise>>},
@@ -285,7 +293,7 @@ std::vector<ShotKey> all_keys() {
          "paths", {},
          to_named<transport_named, &R::settings, &S::transport>},
         {"clamp_cd_m2", "--clamp", kPicture, "CD_M2", number, kNumber,
-         "Largest radiance of indirect light: fewer bright dots, but a picture that is too dark", "0: never", {},
+         "Largest radiance of indirect light in cd/m^2: fewer fireflies, but a picture that is too dark", "0: no limit", {},
          to_number<&R::settings, &S::clamp>},
         {"tone", "--tone", kPicture, "CURVE", text, kToneNames,
          "Tone mapping of developed pictures: film (soft highlights) or linear (clipped)", "film", {},
@@ -297,7 +305,7 @@ std::vector<ShotKey> all_keys() {
          "\"=\": " + effect_names(),
          "auto: what the shot calls for", {}, to_effects},
         {"quality", "--quality", kPicture, "NAME", text, kQualityNames,
-         "What auto leaves out is smaller than that of draft (2 pixels, 4 codes), photo (0.5, 1) or reference (0.1, "
+         "Size below which effects are left out by auto: draft (2 pixels, 4 codes), photo (0.5, 1) or reference (0.1, "
          "0.25)", "photo", {"threshold_px", "threshold_codes"}, to_named<quality_named, &R::settings, &S::thresholds>},
         {"threshold_px", "--threshold-px", kPicture, "PIXELS", number, kNumber,
          "Threshold in pixels, instead of that of the quality", "", {},

@@ -14,7 +14,7 @@
 namespace realcam::shot {
 
 // Names of camera models, tone curves, light transport, pupil sampling and light tracing on the command line and in
-// shot files.
+// shot files: lists for help texts, and functions that return std::nullopt for other names.
 
 inline constexpr const char* kModelNames = "full, full_double, polynomial, thick, mapped, thin or pinhole";
 inline constexpr const char* kToneNames = "film or linear";
@@ -62,15 +62,15 @@ inline std::optional<ToneCurve> tone_named(std::string_view name) {
 
 class ShotTable;
 
-/// Syntax of a key's value if it is a single word, as on the command line.
+/// Syntax of a key's value if it is written as one text, as on the command line.
 enum class Syntax {
-    text,
+    text,               ///< any text
     number,             ///< 0.5, 1/125
-    number_or_auto,
+    number_or_auto,     ///< a number or "auto"
     distance_or_auto,   ///< a number, inf or auto
-    whole,
-    whole_or_auto,
-    number_or_file,
+    whole,              ///< a whole number
+    whole_or_auto,      ///< a whole number or "auto"
+    number_or_file,     ///< a number, or else the name of a file
     three_numbers,      ///< 0,1.5,-2
     two_numbers,        ///< 0,-3.5
     size,               ///< 36x24
@@ -84,11 +84,12 @@ struct ShotKey {
     const char* group;   ///< heading of the option in help texts
     const char* placeholder;  ///< for the option's value in help texts; names the unit
     Syntax syntax;
-    const char* wanted;  ///< expected values, as messages name them
+    const char* wanted;  ///< noun phrase for the expected values, after "must be" in messages
     std::string text;    ///< description in help texts
-    const char* initial;  ///< default value, in words
+    const char* initial;  ///< description of the default; empty: none
     std::vector<std::string_view> replaces;  ///< keys that a change of this key removes
-    void (*read)(const ShotTable&, const ShotKey&, ShotRequest&);  ///< called if the table has the key
+    void (*read)(const ShotTable&, const ShotKey&,
+                 ShotRequest&);  ///< sets the value in a request; called if the table has the key
 
     /// Description with the default value, as help texts show it.
     std::string help() const { return *initial ? text + " [" + initial + ']' : text; }

@@ -16,9 +16,11 @@ namespace {
 
 using SharedScene = std::shared_ptr<const Scene>;
 
-class Builder {
+/// Adds the contents of a SceneRequest to a scene. Each file and texture is read once.
+class SceneBuilder {
 public:
-    Builder(Assembly scene, const SceneRequest& request, const PictureReaders& readers, const KeepGoing& keep_going)
+    SceneBuilder(Assembly scene, const SceneRequest& request, const PictureReaders& readers,
+                 const KeepGoing& keep_going)
         : scene_(std::move(scene)), request_(request), readers_(readers), keep_going_(keep_going) {}
 
     Assembly build() {
@@ -36,21 +38,24 @@ private:
     void add_objects() {
         DistinctNames names(scene_);
         std::map<std::pair<std::string, double>, Assembly> files;  // each file is read once
-        for (const ObjectRequest& wanted : request_.objects) {
-            const auto [file, is_new] = files.try_emplace({wanted.file, wanted.scale});
-            if (is_new) file->second = io::read_scene(wanted.file, {wanted.scale, {}, keep_going_}, readers_.texture);
+        for (const ObjectRequest& object_request : request_.objects) {
+            const auto [file, is_new] = files.try_emplace({object_request.file, object_request.scale});
+            if (is_new)
+                file->second =
+                    io::read_scene(object_request.file, {object_request.scale, {}, keep_going_}, readers_.texture);
             Assembly object = file->second;
-            if (!wanted.material.empty()) {
-                const MaterialRequest& material = find(wanted);
+            if (!object_request.material.empty()) {
+                const MaterialRequest& material = find(object_request);
                 used_.insert(&material);
-                each_part(object, [&](const Scene& part) {
-                    return std::make_shared<const Scene>(of_one_material(part, material));
+                replace_parts(object, [&](const Scene& part) {
+                    return std::make_shared<const Scene>(with_one_material(part, material));
                 });
             }
-            add(scene_, object, wanted.placement, wanted.name, names);
+            add(scene_, object, object_request.placement, object_request.name, names);
         }
     }
 
+    /// Returns the table of the material that an object names. Throws InputError if there is none.
     const MaterialRequest& find(const ObjectRequest& object) const {
         std::vector<std::string> names;
         for (const MaterialRequest& material : request_.materials) {
@@ -61,11 +66,13 @@ private:
                          io::did_you_mean(object.material, names));
     }
 
+    /// Replaces the scene's materials by those of the same name in the request. Throws InputError if the scene has
+    /// none.
     void replace_materials() {
         for (const MaterialRequest& material : request_.materials) {
             bool found = false;
             std::set<std::string> names;
-            each_part(scene_, [&](const Scene& part) -> SharedScene {
+            replace_parts(scene_, [&](const Scene& part) -> SharedScene {
                 names.insert(part.material_names.begin(), part.material_names.end());
                 if (std::find(part.material_names.begin(), part.material_names.end(), material.name) ==
                     part.material_names.end())
@@ -73,7 +80,7 @@ private:
                 found = true;
                 Scene changed = part;
                 for (std::size_t i = 0; i < part.materials.size(); ++i)
-                    if (part.material_names[i] == material.name) put(changed, i, material);
+                    if (part.material_names[i] == material.name) replace_material(changed, i, material);
                 return std::make_shared<const Scene>(std::move(changed));
             });
             if (!found && !used_.contains(&material))
@@ -82,12 +89,13 @@ private:
         }
     }
 
-    /// Replaces each part by f(part), which is called once for all users of a part; null keeps the part.
+    /// Replaces static geometry and objects by f(part), or leaves them unchanged if f returns null. A part that several
+    /// instances share is replaced once.
     template <class F>
-    static void each_part(Assembly& scene, F&& f) {
-        std::map<const Scene*, SharedScene> made;
+    static void replace_parts(Assembly& scene, F&& f) {
+        std::map<const Scene*, SharedScene> replacements;
         const auto change = [&](SharedScene& part) {
-            const auto [known, is_new] = made.try_emplace(part.get());
+            const auto [known, is_new] = replacements.try_emplace(part.get());
             if (is_new) known->second = f(*part);
             if (known->second) part = known->second;
         };
@@ -95,29 +103,32 @@ private:
         for (Instance& instance : scene.instances) change(instance.object);
     }
 
-    Scene of_one_material(const Scene& part, const MaterialRequest& material) {
+    /// Returns a copy of a part whose triangles all have the given material.
+    Scene with_one_material(const Scene& part, const MaterialRequest& material) {
         Scene changed = part;
         changed.materials.resize(1);
         changed.material_names = {material.name};
         changed.textures.clear();
         for (Triangle& triangle : changed.triangles) triangle.material = 0;
-        put(changed, 0, material);
+        replace_material(changed, 0, material);
         return changed;
     }
 
-    void put(Scene& scene, std::size_t index, const MaterialRequest& from) {
-        Material material = from.values;
+    /// Sets a material of a scene, and adds its textures.
+    void replace_material(Scene& scene, std::size_t index, const MaterialRequest& replacement) {
+        Material material = replacement.values;
         for (std::size_t i = 0; i < kMaterialTextures.size(); ++i) {
-            if (from.textures[i].empty()) continue;
+            if (replacement.textures[i].empty()) continue;
             if (scene.uvs.empty())
-                throw InputError(from.location +
-                                 ": the material's object has no texture coordinates to lay a texture by");
+                throw InputError(replacement.location +
+                                 ": the material's object has no texture coordinates, which a texture needs");
             (material.*kMaterialTextures[i]).texture = static_cast<std::int32_t>(scene.textures.size());
-            scene.textures.push_back(texture(from.textures[i], io::use_of(kMaterialTextures[i])));
+            scene.textures.push_back(texture(replacement.textures[i], io::use_of(kMaterialTextures[i])));
         }
         scene.materials[index] = material;
     }
 
+    /// Returns a texture, which is read at the first call.
     const Texture& texture(const std::string& path, io::TextureUse use) {
         const auto [known, is_new] = textures_.try_emplace({path, use});
         if (is_new) known->second = read_texture(path, use, readers_);
@@ -128,7 +139,7 @@ private:
     const SceneRequest& request_;
     const PictureReaders& readers_;
     const KeepGoing& keep_going_;
-    std::set<const MaterialRequest*> used_;  // materials of objects
+    std::set<const MaterialRequest*> used_;  // those that objects of the request name
     std::map<std::pair<std::string, io::TextureUse>, Texture> textures_;
 };
 
@@ -148,9 +159,9 @@ Texture read_texture(const std::string& path, io::TextureUse use, const PictureR
     throw InputError(path + ": cannot be read as a texture" + reason);
 }
 
-Assembly with_request(Assembly scene, const SceneRequest& request, const PictureReaders& readers,
-                      const KeepGoing& keep_going) {
-    return Builder(std::move(scene), request, readers, keep_going).build();
+Assembly with_additions(Assembly scene, const SceneRequest& request, const PictureReaders& readers,
+                        const KeepGoing& keep_going) {
+    return SceneBuilder(std::move(scene), request, readers, keep_going).build();
 }
 
 }  // namespace realcam::shot

@@ -13,10 +13,10 @@
 
 namespace realcam::shot {
 
-/// Values that replace those of a shot file, by their keys.
+/// Values that replace those of a shot file (ShotChanges), by their keys.
 struct Changes {
     toml::table values;
-    std::function<std::string(std::string_view)> name;  ///< name of a key in messages; empty: the key in quotes
+    std::function<std::string(std::string_view)> name;  ///< returns a key's name for messages; empty: the key in quotes
 };
 
 /// A table of a shot file. Errors are InputErrors that name file and line; paths are relative to the file's folder. For
@@ -32,11 +32,12 @@ public:
             };
     }
 
-    /// A node without a line belongs to a change.
+    /// Throws InputError. A node without a line (0) belongs to a change, and then the file is not named.
     [[noreturn]] static void fail_at(const std::string& message, const std::string& file, int line, int) {
         throw InputError((line > 0 ? file + ':' + std::to_string(line) + ": " : "") + message);
     }
 
+    /// True if the key's value is from the changes, not from the file.
     bool is_changed(std::string_view key) const { return changes_ && changes_->values.contains(key); }
 
     /// Position of the table, or of a key of it: "shot.toml:12".
@@ -69,24 +70,27 @@ public:
         return all;
     }
 
+    /// Three numbers; std::nullopt if the key is absent.
     std::optional<Vec3d> point(const char* key) const {
         const auto v = numbers(key, 3);
         if (v.empty()) return std::nullopt;
         return Vec3d{v[0], v[1], v[2]};
     }
-    Vec3d point_wanted(const char* key) const {
+    /// Three numbers; an error if the key is absent.
+    Vec3d required_point(const char* key) const {
         const std::optional<Vec3d> v = point(key);
         if (!v) fail(shown(key) + " is missing: three numbers");
         return *v;
     }
 
-    double number_wanted(const char* key) const {
+    /// A number; an error if the key is absent.
+    double required_number(const char* key) const {
         const std::optional<double> v = number(key);
         if (!v) fail(shown(key) + " is missing: a number");
         return *v;
     }
 
-    /// One number for all three components, or three numbers.
+    /// One number for all three components, or three numbers; std::nullopt if the key is absent.
     std::optional<Vec3d> number_or_three(const char* key) const {
         const toml::node* node = find(key);
         if (!node) return std::nullopt;
@@ -95,7 +99,8 @@ public:
         return Vec3d{v, v, v};
     }
 
-    /// Returns std::nullopt for the text "auto", too.
+    /// A number, which may be infinite; std::nullopt for the text "auto" or if the key is absent. `wanted`: noun phrase
+    /// for the expected values.
     std::optional<double> number_or_auto(const char* key, const char* wanted) const {
         const toml::node* node = find(key);
         if (!node || node->value<std::string>() == "auto") return std::nullopt;
@@ -104,11 +109,12 @@ public:
         return number;
     }
 
+    /// Converts the number of a key to an integer type; an error if it is negative, not whole, or too large.
     template <class Value = int>
     Value whole(const char* key, double number) const {
-        constexpr Value kMost = std::numeric_limits<Value>::max();
-        if (number != std::floor(number) || !(number >= 0) || !(number <= kMost))
-            fail(shown(key) + " wants whole numbers from 0 to " + std::to_string(kMost), find(key));
+        constexpr Value kMax = std::numeric_limits<Value>::max();
+        if (number != std::floor(number) || !(number >= 0) || !(number <= kMax))
+            fail(shown(key) + " must be a whole number from 0 to " + std::to_string(kMax), find(key));
         return static_cast<Value>(number);
     }
 
@@ -122,13 +128,15 @@ public:
         return is_changed(key) ? text : (folder_ / text).string();
     }
 
-    /// Rejects null characters: the system would take the text before one for the name.
+    /// A text without null characters, at which the system would truncate a file name; empty if the key is absent.
     std::string name(const char* key) const {
         const std::string value = text(key);
         if (value.find('\0') != std::string::npos) fail(shown(key) + " holds a null character", find(key));
         return value;
     }
 
+    /// Value of the name under a key, from `find_name`; std::nullopt if the key is absent. An unknown name is an error,
+    /// for which `wanted` lists the known names.
     template <class Named>
     auto named(const char* key, Named&& find_name, const char* wanted) const -> decltype(find_name("")) {
         const std::string value = text(key);
@@ -138,7 +146,7 @@ public:
         return found;
     }
 
-    /// Runs a check of values; its errors get the line of the key or, without a key, of the table.
+    /// Runs `check`; its InputErrors are thrown again with the line of the key or, if `key` is null, of the table.
     template <class Check>
     void checked(const char* key, Check&& check) const {
         try {
@@ -149,7 +157,7 @@ public:
     }
 
 private:
-    std::filesystem::path folder_;
+    std::filesystem::path folder_;  ///< folder of the shot file
     const Changes* changes_;
 };
 

@@ -11,13 +11,14 @@
 namespace realcam::io {
 namespace {
 
+/// Formats a number with nine significant digits.
 std::string number(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.9g", value);
     return text;
 }
 
-/// Formats numbers with all digits that a position far from the scene's origin needs.
+/// Formats numbers, separated by blanks, with 15 significant digits, which positions far from the scene's origin need.
 std::string numbers(std::initializer_list<double> values) {
     std::string list;
     for (const double value : values) {

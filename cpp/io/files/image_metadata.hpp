@@ -10,10 +10,10 @@
 
 namespace realcam::io {
 
-/// Metadata of a picture: how it was taken, as stored in its file.
+/// Metadata of a picture file: the camera and the settings with which the picture was taken.
 struct ImageMetadata {
-    std::string lens;
-    std::string model;
+    std::string lens;   ///< name
+    std::string model;  ///< camera model, see name_of
     double focal_length_mm = 0;
     double f_number = 0;
     IrisShape iris;
@@ -26,15 +26,15 @@ struct ImageMetadata {
     double shutter_opens_s = 0, readout_time_s = 0;
     double iso = 100;
     std::uint32_t seed = 0;
-    int spp = 0;
+    int spp = 0;  ///< samples per pixel
     LightTransport transport = LightTransport::paths;
-    double clamp_cd_m2 = 0;
+    double clamp_cd_m2 = 0;  ///< largest radiance of indirect light; 0: no limit
     /// Names of effects, separated by commas, and the illuminant as text; may be empty.
     std::string effects, illuminant;
     std::string lens_filter;  ///< LensFilter::text(); empty: no filter in front of the lens
-    std::string coatings;  ///< coating_summary, with the effects coatings and ghosts; otherwise empty
-    std::string plan;  ///< decisions of a planner and the values behind them; empty without a planner
-    std::string film;      ///< in a frame: digest of its film's settings and of its number; empty in a still
+    std::string coatings;  ///< coating_summary if an effect needs coatings; otherwise empty
+    std::string plan;  ///< summary of the planner's decisions; empty without a plan
+    std::string film;  ///< digest of the settings, and the number of the video frame; empty for a single picture
     std::string denoiser;  ///< name of the denoiser that changed the exposure; empty without one
 
     /// Returns names "realcam:..." and their values, as stored in every format.
@@ -46,6 +46,7 @@ std::string name_of(CameraModel model);
 /// Returns "paths" or "whitted".
 std::string name_of(LightTransport transport);
 
+/// Returns the metadata of a picture that is taken by a camera with these settings. plan, film and denoiser are empty.
 ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings);
 
 }  // namespace realcam::io

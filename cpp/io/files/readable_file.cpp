@@ -12,9 +12,10 @@
 namespace realcam::io {
 namespace {
 
+/// Files recorded by InputRecording.
 struct Inputs {
     std::mutex mutex;
-    bool is_on = false;
+    bool is_recording = false;
     std::set<std::string> paths;
 };
 
@@ -27,18 +28,18 @@ Inputs& inputs() {
 
 InputRecording::InputRecording() {
     const std::lock_guard lock(inputs().mutex);
-    inputs().is_on = true;
+    inputs().is_recording = true;
 }
 
 InputRecording::~InputRecording() {
     const std::lock_guard lock(inputs().mutex);
-    inputs().is_on = false;
+    inputs().is_recording = false;
     inputs().paths.clear();
 }
 
 void InputRecording::end() {
     const std::lock_guard lock(inputs().mutex);
-    inputs().is_on = false;
+    inputs().is_recording = false;
 }
 
 std::vector<std::string> recorded_inputs() {
@@ -55,7 +56,7 @@ std::string why_unreadable(const std::string& path) {
     if (!S_ISREG(status.st_mode)) return "is a pipe or a device; expected an ordinary file";
     if (access(path.c_str(), R_OK) != 0) return reason(errno);
     const std::lock_guard lock(inputs().mutex);
-    if (inputs().is_on) inputs().paths.insert(path);
+    if (inputs().is_recording) inputs().paths.insert(path);
     return "";
 }
 

@@ -4,12 +4,14 @@
 
 namespace realcam::io {
 
-/// Returns why a path cannot be read as a file, to continue a message: "no such file", "is a folder", ...; empty if it
-/// can. Pipes and devices are rejected: opening them may block for ever, and reading them may never end.
+/// Returns the reason why a path cannot be read as a file, for the end of a message: "no such file", "is a folder",
+/// ...; empty if it can be read. Pipes and devices are rejected, because opening them may block for ever, and reading
+/// them may never end.
 std::string why_unreadable(const std::string& path);
 
-/// Records the inputs of a command during its lifetime: all files that why_unreadable finds readable. The library does
-/// not record any, because its user may well replace a file that was read. At most one object exists at a time.
+/// Records the inputs of a command during its lifetime: all files that why_unreadable finds readable. Only
+/// commands record their inputs: a user of the library may well replace a file that was read. At most one object exists
+/// at a time.
 class InputRecording {
 public:
     InputRecording();
@@ -21,6 +23,7 @@ public:
     void end();
 };
 
+/// Returns the paths recorded so far; empty without a recording.
 std::vector<std::string> recorded_inputs();
 
 }  // namespace realcam::io

@@ -18,6 +18,7 @@
 namespace realcam::io {
 namespace {
 
+/// Message for an errno.
 std::string reason_of(int error) {
     return "cannot be read: " + std::generic_category().message(error);
 }
@@ -36,18 +37,18 @@ RegularFile::RegularFile(const std::string& path) : path_(path) {
         return;
     }
     if (file_ >= 0) close(file_);
-    throw FileError(path, is_open ? "is no ordinary file" : reason_of(error));
+    throw FileError(path, is_open ? "is not an ordinary file" : reason_of(error));
 }
 
 RegularFile::~RegularFile() {
     close(file_);
 }
 
-std::size_t RegularFile::read(char* to, std::size_t most) {
+std::size_t RegularFile::read(char* buffer, std::size_t max_bytes) {
     std::size_t done = 0;
-    most = static_cast<std::size_t>(std::min<std::uint64_t>(most, left_));
-    while (done < most) {
-        const ssize_t n = ::read(file_, to + done, most - done);
+    max_bytes = static_cast<std::size_t>(std::min<std::uint64_t>(max_bytes, left_));
+    while (done < max_bytes) {
+        const ssize_t n = ::read(file_, buffer + done, max_bytes - done);
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) throw FileError(path_, reason_of(errno));
         if (n == 0) left_ = done;  // the file was truncated
@@ -58,15 +59,15 @@ std::size_t RegularFile::read(char* to, std::size_t most) {
     return done;
 }
 
-std::string read_whole_file(const std::string& path, Checkpoint& checkpoint, std::uint64_t most) {
+std::string read_whole_file(const std::string& path, Checkpoint& checkpoint, std::uint64_t max_bytes) {
     RegularFile file(path);
-    const std::uint64_t size = std::min(file.size(), most);
+    const std::uint64_t size = std::min(file.size(), max_bytes);
     if (const std::string why = too_much_memory(size); !why.empty()) throw FileError(path, "holds " + why);
     std::string bytes(static_cast<std::size_t>(size), '\0');
-    constexpr std::size_t kPiece = 1 << 22;
+    constexpr std::size_t kChunk = 1 << 22;
     std::size_t done = 0;
     while (done < bytes.size()) {
-        const std::size_t n = file.read(bytes.data() + done, std::min(kPiece, bytes.size() - done));
+        const std::size_t n = file.read(bytes.data() + done, std::min(kChunk, bytes.size() - done));
         if (n == 0) break;
         done += n;
         checkpoint.pass(n / 64);
@@ -89,11 +90,12 @@ namespace {
 constexpr std::uint64_t kUnknown = std::numeric_limits<std::uint64_t>::max();
 
 /// Reads a file that contains one number, or a word such as "max", for which it returns kUnknown.
-std::uint64_t number_in(const std::string& path) {
+std::uint64_t number_in_file(const std::string& path) {
     std::uint64_t value = 0;
     return std::ifstream(path) >> value ? value : kUnknown;
 }
 
+/// Returns the machine's available memory; kUnknown if the system does not report it.
 std::uint64_t available_on_machine() {
     std::ifstream file("/proc/meminfo");
     for (std::string name; file >> name;) {
@@ -104,9 +106,9 @@ std::uint64_t available_on_machine() {
     return kUnknown;
 }
 
-/// Returns the least limit of this process's control group and of the groups above it. Inside a container the groups'
-/// paths often do not exist, and the container's own limit lies at the root.
-std::uint64_t limit_of_groups() {
+/// Returns the least memory limit of this process's control group and of the groups above it. Inside a container the
+/// groups' paths often do not exist, and the container's own limit lies at the root.
+std::uint64_t control_group_limit() {
     std::uint64_t limit = kUnknown;
     std::ifstream file("/proc/self/cgroup");
     for (std::string line; std::getline(file, line);) {
@@ -118,41 +120,41 @@ std::uint64_t limit_of_groups() {
         const std::string root = unified ? "/sys/fs/cgroup" : "/sys/fs/cgroup/memory";
         const std::string name = unified ? "/memory.max" : "/memory.limit_in_bytes";
         for (std::string group = line.substr(second + 1);; group.erase(group.rfind('/'))) {
-            limit = std::min(limit, number_in(root + group + name));
+            limit = std::min(limit, number_in_file(root + group + name));
             if (group.find('/') == std::string::npos) break;
         }
     }
     return limit;
 }
 
-/// Memory in use by this process: its address space, and the resident part of it.
-struct Taken {
+/// Memory in use by this process, in bytes (or in pages): its address space, and the resident part of it.
+struct MemoryUse {
     std::uint64_t addresses = 0, memory = 0;
 };
 
-Taken taken_by_process() {
-    Taken pages;
+MemoryUse memory_use() {
+    MemoryUse pages;
     std::ifstream("/proc/self/statm") >> pages.addresses >> pages.memory;
     const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
     return {page * pages.addresses, page * pages.memory};
 }
 
-/// Returns the limit of the address space, as set by `ulimit -v`.
-std::uint64_t limit_of_addresses() {
+/// Returns the limit of the address space, as set by `ulimit -v`; kUnknown if it is unlimited.
+std::uint64_t address_space_limit() {
     rlimit limit{};
     return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY ? limit.rlim_cur : kUnknown;
 }
 
-std::uint64_t left_of(std::uint64_t limit, std::uint64_t taken) {
-    return limit == kUnknown ? kUnknown : limit - std::min(limit, taken);
+std::uint64_t remaining(std::uint64_t limit, std::uint64_t used) {
+    return limit == kUnknown ? kUnknown : limit - std::min(limit, used);
 }
 
 }  // namespace
 
 std::uint64_t free_memory() {
-    const Taken taken = taken_by_process();
-    return std::min({available_on_machine(), left_of(limit_of_groups(), taken.memory),
-                     left_of(limit_of_addresses(), taken.addresses)});
+    const MemoryUse used = memory_use();
+    return std::min({available_on_machine(), remaining(control_group_limit(), used.memory),
+                     remaining(address_space_limit(), used.addresses)});
 }
 
 }  // namespace realcam::io

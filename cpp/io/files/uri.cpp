@@ -9,6 +9,7 @@
 namespace realcam::io {
 namespace {
 
+/// Value of a hexadecimal digit; -1 for another character.
 int hex_digit(char c) {
     if (c >= '0' && c <= '9') return c - '0';
     if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -16,17 +17,18 @@ int hex_digit(char c) {
     return -1;
 }
 
-constexpr int kNoDigit = -1;
+constexpr int kInvalidDigit = -1;
 
 constexpr std::array<int, 256> base64_digits() {
     std::array<int, 256> digits{};
-    digits.fill(kNoDigit);
+    digits.fill(kInvalidDigit);
     constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     for (std::size_t i = 0; i < alphabet.size(); ++i)
         digits[static_cast<unsigned char>(alphabet[i])] = static_cast<int>(i);
     return digits;
 }
 
+/// Returns std::nullopt if the text is not base64.
 std::optional<std::string> base64_decoded(std::string_view text) {
     static constexpr std::array<int, 256> digits = base64_digits();
     while (text.ends_with('=')) text.remove_suffix(1);
@@ -37,7 +39,7 @@ std::optional<std::string> base64_decoded(std::string_view text) {
     int count = 0;
     for (const char c : text) {
         const int digit = digits[static_cast<unsigned char>(c)];
-        if (digit == kNoDigit) return std::nullopt;
+        if (digit == kInvalidDigit) return std::nullopt;
         bits = (bits << 6 | static_cast<std::uint32_t>(digit)) & 0xffffff;
         count += 6;
         if (count < 8) continue;
@@ -63,18 +65,18 @@ std::string percent_decoded(std::string_view text) {
 }
 
 std::optional<std::string> data_of_uri(std::string_view uri) {
-    constexpr std::string_view mark = ";base64,";
-    // The media type before it is short; a long text without the mark is not searched to its end.
-    const std::size_t at = uri.substr(0, 1000).find(mark);
-    if (!is_data_uri(uri) || at == std::string_view::npos) return std::nullopt;
-    return base64_decoded(uri.substr(at + mark.size()));
+    constexpr std::string_view marker = ";base64,";
+    // The media type before the marker is short: a long text without it need not be searched to its end.
+    const std::size_t begin = uri.substr(0, 1000).find(marker);
+    if (!is_data_uri(uri) || begin == std::string_view::npos) return std::nullopt;
+    return base64_decoded(uri.substr(begin + marker.size()));
 }
 
 std::optional<std::string> find_beside(const std::string& scene_path, const std::string& name) {
     namespace fs = std::filesystem;
     // No system has longer paths, and a name with a null character would be truncated at it.
-    constexpr std::size_t kLongestPath = 4096;
-    if (name.empty() || name.size() > kLongestPath || name.find('\0') != std::string::npos) return std::nullopt;
+    constexpr std::size_t kMaxPath = 4096;
+    if (name.empty() || name.size() > kMaxPath || name.find('\0') != std::string::npos) return std::nullopt;
     const fs::path folder = fs::path(scene_path).parent_path();
     std::string slashes = name;
     std::replace(slashes.begin(), slashes.end(), '\\', '/');

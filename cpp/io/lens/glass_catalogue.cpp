@@ -1,3 +1,5 @@
+// The bundled glass catalogue, and glasses in realcam's own lens files.
+
 #include <map>
 #include <set>
 
@@ -17,7 +19,7 @@ const toml::table& catalogue() {
 }
 
 /// Returns qualified names ("schott:N-BK7") by plain name.
-const std::multimap<std::string, std::string>& names() {
+const std::multimap<std::string, std::string>& qualified_names() {
     static const std::multimap<std::string, std::string> map = [] {
         std::multimap<std::string, std::string> all;
         for (const auto& [maker, glasses] : catalogue())
@@ -33,13 +35,14 @@ const std::multimap<std::string, std::string>& names() {
 const std::multimap<std::string, CatalogueName>& bare_names() {
     static const std::multimap<std::string, CatalogueName> map = [] {
         std::multimap<std::string, CatalogueName> all;
-        for (const auto& [plain, full] : names())
+        for (const auto& [plain, full] : qualified_names())
             all.emplace(bare_glass_name(plain), CatalogueName{full.substr(0, full.find(':')), plain});
         return all;
     }();
     return map;
 }
 
+/// Returns the glass of a qualified name, "schott:N-BK7". Throws InputError.
 Glass qualified_glass(const std::string& name) {
     const std::size_t colon = name.find(':');
     const toml::table* maker = catalogue()[name.substr(0, colon)].as_table();
@@ -66,13 +69,13 @@ std::vector<CatalogueName> catalogue_names_like(std::string_view name) {
 
 std::vector<std::string> catalogue_full_names() {
     std::vector<std::string> all;
-    for (const auto& [plain, full] : names()) all.push_back(full);
+    for (const auto& [plain, full] : qualified_names()) all.push_back(full);
     return all;
 }
 
 std::vector<std::string> catalogue_plain_names() {
     std::vector<std::string> all;
-    for (const auto& [plain, full] : names())
+    for (const auto& [plain, full] : qualified_names())
         if (all.empty() || all.back() != plain) all.push_back(plain);
     return all;
 }
@@ -83,8 +86,9 @@ Glass glass_from_table(const TomlTable& table) {
     const auto sellmeier = table.table("sellmeier");
     const std::vector<double> cauchy = table.numbers("cauchy", 0);
     const toml::node* points = table.find("table");
-    const int given = index.has_value() + (n_d || v_d) + sellmeier.has_value() + !cauchy.empty() + (points != nullptr);
-    if (given != 1) table.fail("a glass needs exactly one of: n_d with V_d, sellmeier, cauchy, table, index");
+    const int specified =
+        index.has_value() + (n_d || v_d) + sellmeier.has_value() + !cauchy.empty() + (points != nullptr);
+    if (specified != 1) table.fail("a glass needs exactly one of: n_d with V_d, sellmeier, cauchy, table, index");
     if (index) return Glass::constant(*index);
     if (!cauchy.empty()) return Glass::cauchy(cauchy);
     if (sellmeier) {
@@ -99,9 +103,9 @@ Glass glass_from_table(const TomlTable& table) {
         std::vector<Glass::TablePoint> list;
         const toml::array* rows = points->as_array();
         if (!rows || rows->empty()) table.fail("\"table\" must be an array of [wavelength in nm, index]", points);
-        if (rows->size() > kMostFileIndices)
+        if (rows->size() > kMaxFileIndices)
             table.fail("\"table\" has " + std::to_string(rows->size()) + " rows; at most " +
-                           std::to_string(kMostFileIndices) + " are read",
+                           std::to_string(kMaxFileIndices) + " are read",
                        points);
         std::set<double> wavelengths;
         for (const toml::node& row : *rows) {
@@ -114,7 +118,7 @@ Glass glass_from_table(const TomlTable& table) {
         }
         return Glass::table(std::move(list));
     }
-    if (!n_d || !v_d) table.fail("n_d and V_d must be given together");
+    if (!n_d || !v_d) table.fail("n_d and V_d must be specified together");
     if (!(*n_d >= 1)) table.fail("the index n_d must be at least 1", table.find("n_d"));
     if (!(*v_d > 0)) table.fail("the Abbe number V_d must be positive", table.find("V_d"));
     return Glass::from_abbe_number(*n_d, *v_d);
@@ -123,7 +127,7 @@ Glass glass_from_table(const TomlTable& table) {
 Glass catalogue_glass(const std::string& name) {
     std::string full = name;
     if (name.find(':') == std::string::npos) {
-        const auto [first, last] = names().equal_range(name);
+        const auto [first, last] = qualified_names().equal_range(name);
         if (first == last)
             throw InputError("unknown glass \"" + name + '"' + did_you_mean(name, catalogue_plain_names()));
         if (std::next(first) != last) {

@@ -10,13 +10,15 @@
 namespace realcam::io {
 namespace {
 
-/// Limit on the number of coatings: several for each surface.
-constexpr std::size_t kMostCoatings = 1000;
+/// Greatest number of coatings in a file: several for each surface.
+constexpr std::size_t kMaxCoatings = 1000;
 
+/// Names of the predefined metals.
 std::vector<std::string> metal_names() {
     return {aluminium().label, silver().label};
 }
 
+/// Reads the key "metal": a name or complex indices.
 CoatingMaterial read_metal(const TomlTable& table) {
     const toml::node* node = table.find("metal");
     if (!node->is_string()) return read_complex_index(table, "metal");
@@ -27,6 +29,7 @@ CoatingMaterial read_metal(const TomlTable& table) {
                node);
 }
 
+/// Reads the material of a layer: a transparent one, a metal, or complex indices.
 CoatingMaterial read_layer_material(const TomlTable& layer, const std::optional<TomlTable>& glasses) {
     const bool is_complex = layer.find("complex_index") != nullptr;
     if (is_complex == (layer.find("material") != nullptr))
@@ -56,6 +59,7 @@ CoatingLayer read_layer(const TomlTable& layer, const std::optional<TomlTable>& 
     return result;
 }
 
+/// Reads the layers of a coating; empty without the key "layers".
 std::vector<CoatingLayer> read_layers(const TomlTable& table, const std::optional<TomlTable>& glasses) {
     const auto design = table.number("design_wavelength_nm");
     if (design && !(*design >= 100 && *design <= 20000))
@@ -75,13 +79,14 @@ std::vector<CoatingLayer> read_layers(const TomlTable& table, const std::optiona
         layers.push_back(read_layer(TomlTable(*layer.as_table(), table.file()), glasses, design));
         const CoatingMaterial& material = layers.back().material;
         indices += material.points.size() + material.glass.parts().points.size();
-        if (indices > kMostFileIndices)
-            table.fail("the materials of the coating have more than " + std::to_string(kMostFileIndices) + " indices",
+        if (indices > kMaxFileIndices)
+            table.fail("the materials of the coating have more than " + std::to_string(kMaxFileIndices) + " indices",
                        &layer);
     }
     return layers;
 }
 
+/// Reads a table [coating.NAME].
 Coating read_coating(const TomlTable& table, const std::string& name, const std::optional<TomlTable>& glasses) {
     table.allow({"layers", "design_wavelength_nm", "metal", "metal_label", "reflectance", "label"});
     const bool layers = table.find("layers") != nullptr, metal = table.find("metal") != nullptr;
@@ -107,15 +112,15 @@ Coating read_coating(const TomlTable& table, const std::string& name, const std:
 
 LensCoatings::LensCoatings(const TomlTable& file, const std::optional<TomlTable>& glasses) {
     if (const auto tables = file.table("coating")) {
-        if (tables->raw().size() > kMostCoatings)
+        if (tables->raw().size() > kMaxCoatings)
             tables->fail("the lens has " + std::to_string(tables->raw().size()) + " coatings; at most " +
-                         std::to_string(kMostCoatings) + " are read");
+                         std::to_string(kMaxCoatings) + " are read");
         for (const auto& [key, node] : tables->raw()) {
             const std::string name(key.str());
             tables->check_name(name, node);
             if (named_coating(name))
-                tables->fail(in_quotes(name) + " is a coating that all lens files know; choose another name", &node);
-            own_[name] = read_coating(*tables->table(name), name, glasses);
+                tables->fail(in_quotes(name) + " is the name of a predefined coating; choose another name", &node);
+            file_coatings_[name] = read_coating(*tables->table(name), name, glasses);
         }
     }
     if (!file.find("default_coating")) return;
@@ -127,17 +132,17 @@ LensCoatings::LensCoatings(const TomlTable& file, const std::optional<TomlTable>
 
 Coating LensCoatings::named(const TomlTable& table, std::string_view key) const {
     const std::string name = table.text(key);
-    if (const auto found = own_.find(name); found != own_.end()) return found->second;
+    if (const auto found = file_coatings_.find(name); found != file_coatings_.end()) return found->second;
     if (auto known = named_coating(name)) return *known;
     std::vector<std::string> all = named_coatings();
-    for (const auto& [own, coating] : own_) all.push_back(own);
+    for (const auto& [own, coating] : file_coatings_) all.push_back(own);
     table.fail("unknown coating " + in_quotes(name) + did_you_mean(name, all) +
                    "; expected the name of a table [coating.NAME], "
                    "\"bare\", \"quarter_wave\", \"aluminium\", \"silver\" or \"unknown\"",
                table.find(key));
 }
 
-Coating LensCoatings::of(const TomlTable& surface) const {
+Coating LensCoatings::coating_of(const TomlTable& surface) const {
     return surface.find("coating") ? named(surface, "coating") : Coating();
 }
 

@@ -15,17 +15,18 @@ public:
     /// `glasses`: the file's table "glass", whose glasses may be used for layers.
     LensCoatings(const TomlTable& file, const std::optional<TomlTable>& glasses);
 
-    /// Reads the key "coating" of a surface; without it, the coating is unknown.
-    Coating of(const TomlTable& surface) const;
+    /// Returns the coating that the key "coating" of a surface's table names; without the key, an unknown coating.
+    Coating coating_of(const TomlTable& surface) const;
 
     /// Applies the file's "default_coating" to faces between air and glass without a key "coating".
     void apply_default(LensSystem& lens, const toml::array& surfaces) const;
 
 private:
+    /// Returns the coating that the text under `key` names.
     Coating named(const TomlTable& table, std::string_view key) const;
 
-    std::map<std::string, Coating> own_;
-    Coating default_;
+    std::map<std::string, Coating> file_coatings_;  ///< the tables [coating.NAME], by name
+    Coating default_;                               ///< "default_coating"; unknown without it
 };
 
 }  // namespace realcam::io

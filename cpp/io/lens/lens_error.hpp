@@ -6,8 +6,8 @@
 
 namespace realcam::io {
 
-/// A glass of a lens file that no catalogue has, or several have. The caller can resolve it by specifying a glass for
-/// the name.
+/// Error of a glass name in a lens file that is unknown or ambiguous. The caller can resolve it by specifying a glass
+/// for the name.
 class UnknownGlass : public InputError {
 public:
     UnknownGlass(const std::string& message, std::string glass, std::string candidate = {})
@@ -17,8 +17,8 @@ public:
     std::string candidate;  ///< one of several possible glasses, "schott:F4"; empty if there are none
 };
 
-/// An error of a lens file that the caller can resolve. How to do so depends on the program, so the message does not
-/// mention it.
+/// Error of a lens file that the caller may be able to resolve by options. The message does not mention the options,
+/// because their names depend on the program.
 class LensReadError : public LensFileError {
 public:
     using LensFileError::LensFileError;

@@ -18,15 +18,16 @@
 namespace realcam::io {
 namespace {
 
-/// Format of lens files.
+/// Format of lens files, with its reader and writer.
 struct LensFormat {
     std::string_view suffix;
     LensSystem (*read)(std::string_view bytes, const std::string& file, const LensReadOptions& options);
     LensText (*write)(const LensSystem& lens);  ///< null if the format is only read
 };
 
+/// Reads a lens file of another program by its reader of prescriptions.
 template <Prescription (*read)(std::string_view, const std::string&, LensGlasses&)>
-LensSystem read_foreign(std::string_view bytes, const std::string& file, const LensReadOptions& options) {
+LensSystem read_prescription(std::string_view bytes, const std::string& file, const LensReadOptions& options) {
     LensGlasses glasses(options);
     const std::string text = decoded_lens_text(bytes, file);
     Prescription prescription = read(text, file, glasses);
@@ -43,12 +44,12 @@ LensText write_toml(const LensSystem& lens) {
 /// All formats; other suffixes are read as the first one.
 constexpr LensFormat kFormats[] = {
     {".toml", read_toml, write_toml},
-    {".zmx", read_foreign<read_zemax>, lens_as_zemax},
-    {".seq", read_foreign<read_code_v>, lens_as_code_v},
-    {".len", read_foreign<read_oslo>, nullptr},
-    {".dat", read_foreign<read_pbrt>, nullptr},
-    {".json", read_foreign<read_optiland>, lens_as_optiland},
-    {".roa", read_foreign<read_ray_optics>, lens_as_ray_optics},
+    {".zmx", read_prescription<read_zemax>, lens_as_zemax},
+    {".seq", read_prescription<read_code_v>, lens_as_code_v},
+    {".len", read_prescription<read_oslo>, nullptr},
+    {".dat", read_prescription<read_pbrt>, nullptr},
+    {".json", read_prescription<read_optiland>, lens_as_optiland},
+    {".roa", read_prescription<read_ray_optics>, lens_as_ray_optics},
 };
 
 /// Returns the format by the suffix of a file's name, ignoring case; null if it is not known.
@@ -69,6 +70,7 @@ std::string lens_suffixes(bool written) {
     return text;
 }
 
+/// Reads a lens file of realcam. If the text is not TOML, the error says that the suffix is unknown.
 LensSystem read_toml(std::string_view bytes, const std::string& file, const LensReadOptions& options) {
     toml::table table;
     try {
@@ -87,12 +89,12 @@ LensSystem read_toml(std::string_view bytes, const std::string& file, const Lens
     return lens;
 }
 
-/// Throws LensFileError if a file is not an ordinary file, or is too long for a lens.
+/// Returns the contents of a file. Throws LensFileError if it is not a regular file, or is too large for a lens file.
 std::string text_of_file(const std::string& path) {
-    constexpr std::size_t kLargest = 16 << 20;  // bytes; the bundled lenses have some thousand
+    constexpr std::size_t kMaxBytes = 16 << 20;  // bytes; the bundled lenses have some thousand
     try {
         RegularFile file(path);
-        if (file.size() > kLargest) throw LensFileError("is larger than 16 MiB; expected a lens file", path);
+        if (file.size() > kMaxBytes) throw LensFileError("is larger than 16 MiB; expected a lens file", path);
         std::string text(file.size(), '\0');
         text.resize(file.read(text.data(), text.size()));
         return text;

@@ -20,7 +20,8 @@ std::map<std::string, std::string> lens_files_on_path();
 /// Returns the text of a bundled lens file. Throws LensFileError, with the nearest names, if there is no such lens.
 std::string_view bundled_lens_text(const std::string& name);
 
-/// Meaning of the thickness in a row of a pbrt lens table: distance after the surface or before it.
+/// Meaning of the thickness in a row of a pbrt lens table: the distance after the row's surface, or before it;
+/// by_first_row: detected from the first row.
 enum class PbrtThickness { by_first_row, after, before };
 
 /// Fields and wavelengths that a lens was designed for, as stated in another program's file.
@@ -31,7 +32,7 @@ struct DesignLight {
 
 /// Options for reading another program's lens file.
 struct LensReadOptions {
-    /// Glasses for names in the file that no catalogue has, or several have.
+    /// Glasses for names in the file that are unknown or ambiguous, by name in the file.
     std::map<std::string, Glass> glasses;
     /// Glasses of the user's catalogues (see read_glass_catalogue), which take precedence over the bundled ones.
     std::map<std::string, Glass> catalogue;
@@ -45,8 +46,9 @@ struct LensReadOptions {
     DesignLight* design_light = nullptr;  ///< receives the design light, if not null
 };
 
-/// True if `name` means a file: if it is not a bundled lens, and has a '/' or the suffix of a lens file, or if a file
-/// exists at `path`, which is the name itself, or the name relative to another file's folder.
+/// True if `name` denotes a file rather than a lens of a known name: it is not that of a bundled lens, and it has a '/'
+/// or the suffix of a lens file, or a file exists at `path`. `path`: the name itself, or relative to another file's
+/// folder.
 bool is_lens_path(const std::string& name, const std::string& path);
 
 /// Reads a lens: a bundled one or one of the lens path by name, or a file by its path (see is_lens_path). The suffix
@@ -67,10 +69,12 @@ LensSystem parse_lens_file(std::string_view bytes, const std::string& file, cons
 /// unknown (with the nearest names) or ambiguous.
 Glass catalogue_glass(const std::string& name);
 
-/// Adds the glasses of a Zemax catalogue (.agf), by bare name. Throws InputError naming file and line.
+/// Adds the glasses of a Zemax glass catalogue (.agf) to `catalogue`, by bare_glass_name. Throws LensFileError naming
+/// file and line.
 void read_glass_catalogue(const std::string& path, std::map<std::string, Glass>& catalogue);
 
-/// Parses a glass of the command line, "NAME=n_d,V_d" or "NAME=schott:F4": the name, and the glass. Throws InputError.
+/// Parses a glass specified on the command line, "NAME=n_d,V_d" or "NAME=schott:F4". Returns the name and the glass.
+/// Throws InputError.
 std::pair<std::string, Glass> named_glass(const std::string& text);
 
 /// Text of a lens file; `warnings` names the properties of the lens that its format cannot express.

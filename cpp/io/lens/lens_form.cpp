@@ -1,3 +1,5 @@
+// Form and aperture of a surface in realcam's own lens files: reader and writer.
+
 #include "lens_toml.hpp"
 
 #include <algorithm>
@@ -10,17 +12,18 @@ namespace realcam::io {
 
 namespace {
 
-/// Parses a power that is a key of a table.
-int power_of(const TomlTable& table, std::string_view key, const toml::node& node, int most) {
+/// Parses a key of the table "radial_terms": a power of r from 1 to `max_power`.
+int power_of(const TomlTable& table, std::string_view key, const toml::node& node, int max_power) {
     const bool digits = !key.empty() && key.size() < 3 && key.find_first_not_of("0123456789") == key.npos;
     const int power = digits ? std::stoi(std::string(key)) : 0;
-    if (power < 1 || power > most)
-        table.fail("radial terms have powers from 1 to " + std::to_string(most) + " as keys; this one is \"" +
+    if (power < 1 || power > max_power)
+        table.fail("radial terms have powers from 1 to " + std::to_string(max_power) + " as keys; this one is \"" +
                        std::string(key) + '"',
                    &node);
     return power;
 }
 
+/// Reads the coefficients of r, r^2, r^3, ..., in this order.
 std::vector<double> read_radial(const TomlTable& surface) {
     std::vector<double> values;
     const auto terms = surface.table("radial_terms");
@@ -33,17 +36,19 @@ std::vector<double> read_radial(const TomlTable& surface) {
     return values;
 }
 
+/// Reads the array "xy_terms"; empty if the key is absent.
 std::vector<XyTerm> read_xy(const TomlTable& surface) {
     std::vector<XyTerm> terms;
     const toml::node* node = surface.find("xy_terms");
     if (!node) return terms;
-    const std::string wanted = "\"xy_terms\" must be an array of [power of x, power of y, coefficient]";
-    if (!node->as_array()) surface.fail(wanted, node);
+    const std::string expected = "\"xy_terms\" must be an array of [power of x, power of y, coefficient]";
+    if (!node->as_array()) surface.fail(expected, node);
     for (const toml::node& item : *node->as_array()) {
         const toml::array* triple = item.as_array();
         if (!triple || triple->size() != 3 || !(*triple)[0].is_integer() || !(*triple)[1].is_integer())
-            surface.fail(wanted + ", the powers whole numbers", &item);
+            surface.fail(expected + ", the powers whole numbers", &item);
         const auto power = [&](std::size_t i) {
+            // Limited to fit an int; check_surfaces rejects powers that are out of range.
             return static_cast<int>(std::clamp<std::int64_t>(*(*triple)[i].value<std::int64_t>(), -1, 1000));
         };
         const XyTerm term{power(0), power(1), surface.as_number((*triple)[2], "a coefficient of \"xy_terms\"")};
@@ -57,7 +62,7 @@ std::vector<XyTerm> read_xy(const TomlTable& surface) {
     return terms;
 }
 
-/// Reads the terms of a row of kFormTerms.
+/// Reads polynomial terms of one kind (see kFormTerms), if the surface has their key.
 template <class Terms>
 void read_terms(const TomlTable& surface, std::optional<Terms>& terms) {
     constexpr FormWords words = Terms::words;
@@ -77,42 +82,46 @@ void read_terms(const TomlTable& surface, std::optional<Terms>& terms) {
         table->allow({"radius_mm", words.coefficients_key});
     }
     const auto radius = table->number("radius_mm");
-    if (!radius) table->fail("\"radius_mm\" is missing: where the polynomials have their rim");
+    if (!radius) table->fail("\"radius_mm\" is missing: the normalisation radius of the polynomials");
     terms->radius = *radius;
     terms->coefficients = table->numbers(words.coefficients_key, 0);
     if (terms->coefficients.empty()) table->fail(std::string{'"'} + words.coefficients_key + "\" is missing");
 }
 
+/// Returns two numbers as a vector; (0, 0) for an absent key.
 Vec2d pair_of(const std::vector<double>& values) {
     return values.empty() ? Vec2d{0, 0} : Vec2d{values[0], values[1]};
 }
 
+/// Reads the key "polygon_mm", which must exist.
 std::vector<Vec2d> read_corners(const TomlTable& table) {
     std::vector<Vec2d> corners;
     const toml::node* node = table.find("polygon_mm");
-    const std::string wanted = "\"polygon_mm\" must be an array of corners [x, y]";
-    if (!node->as_array()) table.fail(wanted, node);
+    const std::string expected = "\"polygon_mm\" must be an array of corners [x, y]";
+    if (!node->as_array()) table.fail(expected, node);
     for (const toml::node& item : *node->as_array()) {
         const toml::array* corner = item.as_array();
-        if (!corner || corner->size() != 2) table.fail(wanted, &item);
+        if (!corner || corner->size() != 2) table.fail(expected, &item);
         corners.push_back(
             {table.as_number((*corner)[0], "x of a corner"), table.as_number((*corner)[1], "y of a corner")});
     }
     return corners;
 }
 
-/// Returns the one of these keys that a table has.
-std::string one_of(const TomlTable& table, const std::vector<std::string_view>& keys, const std::string& wanted) {
+/// Returns the only one of these keys that a table has. Throws LensFileError with the message `expected` if it has none
+/// or several.
+std::string one_of(const TomlTable& table, const std::vector<std::string_view>& keys, const std::string& expected) {
     std::string found;
     for (const std::string_view key : keys) {
         if (!table.find(key)) continue;
-        if (!found.empty()) table.fail(wanted, table.find(key));
+        if (!found.empty()) table.fail(expected, table.find(key));
         found = key;
     }
-    if (found.empty()) table.fail(wanted);
+    if (found.empty()) table.fail(expected);
     return found;
 }
 
+/// Appends an obscuration, or the arms of a spider, whose default length is `rim`.
 void read_obscuration(const TomlTable& table, double rim, std::vector<Obscuration>& to) {
     const std::string kind =
         one_of(table, {"circle_mm", "ellipse_mm", "rectangle_mm", "spider_arms"},
@@ -153,7 +162,7 @@ SurfaceForm read_form(const TomlTable& table) {
     }
     const auto radius = table.number("radius_of_curvature_x_mm"), curvature = table.number("curvature_x_per_mm");
     if (radius && *radius == 0)
-        table.fail("a radius of curvature of 0 is no surface; leave it out for none",
+        table.fail("a radius of curvature must not be 0; leave it out for a plane section",
                    table.find("radius_of_curvature_x_mm"));
     if (radius && curvature)
         table.fail("\"radius_of_curvature_x_mm\" and \"curvature_x_per_mm\" say the same; specify only one of them",
@@ -197,6 +206,7 @@ ApertureShape read_aperture(const TomlTable& surface, double rim) {
 
 namespace {
 
+/// Line of a table: a key and its value.
 std::string key(const std::string& name, const std::string& value) {
     return name + " = " + value + '\n';
 }
@@ -220,7 +230,7 @@ std::string offset(Vec2d v) {
     return v == Vec2d{0, 0} ? "" : ", offset_mm = " + pair(v);
 }
 
-/// The terms of a row of kFormTerms as an inline table.
+/// Polynomial terms of one kind (see kFormTerms) as an inline table.
 template <class Terms>
 std::string table_of(const Terms& terms) {
     constexpr FormWords words = Terms::words;
@@ -246,7 +256,7 @@ std::string form_as_toml(const SurfaceForm& form) {
     if (form.base != BaseForm::conic)
         lines += key("form", form.base == BaseForm::toroid ? "\"toroid\"" : "\"biconic\"");
     if (form.curvature_x != 0) {
-        const auto radius = before_rounding(1 / form.curvature_x, form.curvature_x, [](double r) { return 1 / r; });
+        const auto radius = exact_preimage(1 / form.curvature_x, form.curvature_x, [](double r) { return 1 / r; });
         lines += radius ? key("radius_of_curvature_x_mm", toml_number(*radius))
                         : key("curvature_x_per_mm", toml_number(form.curvature_x));
     }

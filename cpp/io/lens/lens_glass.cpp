@@ -13,20 +13,20 @@
 namespace realcam::io {
 namespace {
 
-/// Returns the catalogue that a file means by a name: "SCHOTT", "SUMITA_AUG2011", "NIKON-HIKARI", "MISC"; empty if it
-/// is not known.
-std::string maker_of(const std::string& catalogue) {
+/// Returns the maker in realcam's catalogue that corresponds to a catalogue name of another program, such as "SCHOTT",
+/// "SUMITA_AUG2011", "NIKON-HIKARI" or "MISC"; empty if it is unknown.
+std::string maker_of_catalogue(const std::string& catalogue) {
     const std::string word = upper_case(catalogue);
     for (const char* maker : {"schott", "ohara", "hoya", "cdgm", "hikari", "sumita"})
         if (word.find(upper_case(maker)) != std::string::npos) return maker;
     if (word == "NIKON") return "hikari";
-    // Other programs' catalogues of materials of no glass maker.
+    // Catalogues of other programs with materials that are not those of a glass maker.
     for (const char* mixed : {"MISC", "SPECIAL", "INFRARED", "PLASTIC", "PLASTICS", "ZEON", "ZEONEX", "POLYMER"})
         if (word == mixed) return "misc";
     return {};
 }
 
-std::string listed(const std::vector<std::string>& names) {
+std::string quoted_list(const std::vector<std::string>& names) {
     std::string text;
     for (const std::string& name : names) text += (text.empty() ? "" : ", ") + in_quotes(name);
     return text;
@@ -39,87 +39,92 @@ bool same_indices(const Glass& a, const Glass& b) {
     return true;
 }
 
-Glass catalogued(const CatalogueName& found) {
+/// Returns a glass of the catalogue, labelled with its maker only if several makers use the name.
+Glass glass_of(const CatalogueName& found) {
     const bool is_unique = catalogue_names_like(found.name).size() == 1;
     return catalogue_glass(is_unique ? found.name : found.full());
 }
 
-/// Returns the names that are in the catalogues listed in a file.
-std::vector<CatalogueName> allowed(const std::vector<CatalogueName>& all, const std::vector<std::string>& catalogues) {
+/// Returns the names that are in one of the catalogues listed in a file; all names if it lists none.
+std::vector<CatalogueName> in_listed_catalogues(const std::vector<CatalogueName>& all,
+                                                const std::vector<std::string>& catalogues) {
     if (catalogues.empty()) return all;
     std::vector<CatalogueName> found;
-    for (const CatalogueName& one : all)
-        if (std::any_of(catalogues.begin(), catalogues.end(), [&](const auto& c) { return maker_of(c) == one.maker; }))
-            found.push_back(one);
+    for (const CatalogueName& candidate : all)
+        if (std::any_of(catalogues.begin(), catalogues.end(),
+                        [&](const auto& c) { return maker_of_catalogue(c) == candidate.maker; }))
+            found.push_back(candidate);
     return found;
 }
 
-bool all_alike(const std::vector<CatalogueName>& found, const Glass& first) {
-    return std::all_of(found.begin(), found.end(),
-                       [&](const CatalogueName& one) { return same_indices(first, catalogue_glass(one.full())); });
+/// True if all these glasses have the same indices as `first`.
+bool all_have_same_indices(const std::vector<CatalogueName>& found, const Glass& first) {
+    return std::all_of(found.begin(), found.end(), [&](const CatalogueName& candidate) {
+        return same_indices(first, catalogue_glass(candidate.full()));
+    });
 }
 
 }  // namespace
 
-bool LensGlasses::is_given(const std::string& name) const {
+bool LensGlasses::has_user_glass(const std::string& name) const {
     return std::any_of(options_.glasses.begin(), options_.glasses.end(),
                        [&](const auto& entry) { return bare_glass_name(entry.first) == bare_glass_name(name); });
 }
 
 std::optional<Glass> LensGlasses::in_catalogue(const std::string& name,
                                                const std::vector<std::string>& catalogues) const {
-    if (is_given(name) || own_.contains(name) || options_.catalogue.contains(bare_glass_name(name))) return {};
-    const std::vector<CatalogueName> found = allowed(catalogue_names_like(name), catalogues);
+    if (has_user_glass(name) || file_glasses_.contains(name) || options_.catalogue.contains(bare_glass_name(name)))
+        return {};
+    const std::vector<CatalogueName> found = in_listed_catalogues(catalogue_names_like(name), catalogues);
     if (found.empty()) return {};
-    Glass first = catalogued(found.front());
-    if (!all_alike(found, first)) return {};
+    Glass first = glass_of(found.front());
+    if (!all_have_same_indices(found, first)) return {};
     return first;
 }
 
 Glass LensGlasses::find(const std::string& name, const std::vector<std::string>& catalogues, const std::string& hint) {
     requested_.insert(name);
-    for (const auto& [given, glass] : options_.glasses)
-        if (bare_glass_name(given) == bare_glass_name(name)) {
-            used_.insert(given);
+    for (const auto& [user_name, glass] : options_.glasses)
+        if (bare_glass_name(user_name) == bare_glass_name(name)) {
+            used_.insert(user_name);
             Glass found = glass;
             if (found.label.empty()) found.label = name;
             return found;
         }
-    if (const auto own = own_.find(name); own != own_.end()) return own->second;
+    if (const auto own = file_glasses_.find(name); own != file_glasses_.end()) return own->second;
     if (const auto found = options_.catalogue.find(bare_glass_name(name)); found != options_.catalogue.end())
         return found->second;
     const std::string quoted = in_quotes(name);
     if (bare_glass_name(name).empty()) throw InputError("a glass has no name");
-    const std::vector<CatalogueName> all = catalogue_names_like(name), found = allowed(all, catalogues);
+    const std::vector<CatalogueName> all = catalogue_names_like(name), found = in_listed_catalogues(all, catalogues);
     if (all.empty())
         if (const std::optional<AbbePair> number = glass_of_number(name))
             return glass_of_pair(number->n_d, number->v_d);
     const auto names_of = [](const std::vector<CatalogueName>& list) {
         std::vector<std::string> names;
-        for (const CatalogueName& one : list) names.push_back(one.full());
+        for (const CatalogueName& candidate : list) names.push_back(candidate.full());
         return names;
     };
     if (!found.empty()) {
-        Glass first = catalogued(found.front());
-        if (all_alike(found, first)) return first;
-        throw UnknownGlass("the glass name " + quoted + " stands for several glasses: " + listed(names_of(found)) +
+        Glass first = glass_of(found.front());
+        if (all_have_same_indices(found, first)) return first;
+        throw UnknownGlass("the glass name " + quoted + " stands for several glasses: " + quoted_list(names_of(found)) +
                                "; specify one of them",
                            name, found.front().full());
     }
     std::string message = "unknown glass " + quoted;
     if (!catalogues.empty()) message += " of the catalogue" + std::string(catalogues.size() > 1 ? "s " : " ");
-    if (!catalogues.empty()) message += listed(catalogues);
+    if (!catalogues.empty()) message += quoted_list(catalogues);
     if (!all.empty())
-        message += ", which other catalogues have: " + listed(names_of(all));
+        message += ", which other catalogues have: " + quoted_list(names_of(all));
     else
         message += did_you_mean(name, catalogue_plain_names());
-    throw UnknownGlass(message + (hint.empty() ? "" : "; the file says of it " + hint) + "; specify its n_d and V_d",
-                       name);
+    throw UnknownGlass(message + (hint.empty() ? "" : "; the file states " + hint) + "; specify its n_d and V_d", name);
 }
 
 Glass LensGlasses::substance(const std::string& book, const std::string& page, std::vector<std::string>& remarks) {
     struct Page {
-        const char *book, *page, *name;  ///< `name`: in the catalogue
+        const char *book, *page, *name;  ///< `name`: in realcam's catalogue, maker "misc"
     };
     // The first page of a book stands for unknown pages.
     static constexpr Page kPages[] = {
@@ -139,12 +144,13 @@ Glass LensGlasses::substance(const std::string& book, const std::string& page, s
         {"ZnSe", "Marple", "ZNSE"},
         {"ZnSe", "Connolly", "ZNSE-CONNOLLY"},
     };
-    if (is_given(book)) return find(book, {});
+    if (has_user_glass(book)) return find(book, {});
     requested_.insert(book);
     const Page* found = nullptr;
-    for (const Page& one : kPages)
-        if (upper_case(one.book) == upper_case(book) && (!found || upper_case(one.page) == upper_case(page)))
-            found = &one;
+    for (const Page& candidate : kPages)
+        if (upper_case(candidate.book) == upper_case(book) &&
+            (!found || upper_case(candidate.page) == upper_case(page)))
+            found = &candidate;
     if (!found)
         throw UnknownGlass("unknown substance " + in_quotes(book) + " of refractiveindex.info; specify its n_d and V_d",
                            book);
@@ -152,19 +158,19 @@ Glass LensGlasses::substance(const std::string& book, const std::string& page, s
         char n_d[32];
         std::snprintf(n_d, sizeof n_d, "%.5f", catalogue_glass("misc:" + std::string(found->name)).index(kLineD_nm));
         remarks.push_back("the page " + in_quotes(page) + " of " + found->book +
-                          " of refractiveindex.info is not known: that of " + found->page + " is taken, n_d = " + n_d +
-                          "; their difference is not known");
+                          " of refractiveindex.info is unknown; " + found->page + " is used instead, n_d = " + n_d +
+                          "; how much they differ is unknown");
     }
     Glass glass = catalogue_glass("misc:" + std::string(found->name));
     return glass;
 }
 
 void LensGlasses::check_all_used() const {
-    for (const auto& [given, glass] : options_.glasses)
-        if (!used_.contains(given))
-            throw InputError(
-                "the lens file has no glass " + in_quotes(given) + "; " +
-                (requested_.empty() ? "it names none" : "it names " + listed({requested_.begin(), requested_.end()})));
+    for (const auto& [user_name, glass] : options_.glasses)
+        if (!used_.contains(user_name))
+            throw InputError("the lens file has no glass " + in_quotes(user_name) + "; " +
+                             (requested_.empty() ? "it names none"
+                                                 : "it names " + quoted_list({requested_.begin(), requested_.end()})));
 }
 
 std::optional<CatalogueName> catalogue_name_of(const Glass& glass) {
@@ -174,9 +180,9 @@ std::optional<CatalogueName> catalogue_name_of(const Glass& glass) {
         return std::nullopt;
     }
     const std::size_t colon = glass.label.find(':');
-    for (const CatalogueName& one :
+    for (const CatalogueName& candidate :
          catalogue_names_like(glass.label.substr(colon == std::string::npos ? 0 : colon + 1)))
-        if (colon == std::string::npos || one.full() == glass.label) return one;
+        if (colon == std::string::npos || candidate.full() == glass.label) return candidate;
     return std::nullopt;
 }
 

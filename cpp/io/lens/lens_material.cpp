@@ -55,9 +55,9 @@ CoatingMaterial read_complex_index(const TomlTable& table, std::string_view key)
         material.label = number_label(pair[0]) + " + " + number_label(pair[1]) + " i";
         return material;
     }
-    if (rows->size() > kMostFileIndices)
+    if (rows->size() > kMaxFileIndices)
         table.fail("\"" + std::string(key) + "\" has " + std::to_string(rows->size()) + " points; at most " +
-                       std::to_string(kMostFileIndices) + " are read",
+                       std::to_string(kMaxFileIndices) + " are read",
                    node);
     CoatingMaterial material;
     for (const toml::node& row : *rows) {

@@ -8,52 +8,54 @@ namespace realcam::io {
 
 namespace {
 
-/// Returns the placement of a frame, without the rounding errors of breaks that undo each other.
+/// Returns the placement of a frame. Rounding errors that remain where coordinate breaks cancel are set to 0.
 SurfacePlacement placement_of(const Affine<double>& frame) {
     SurfacePlacement placement = SurfacePlacement::of(frame);
     constexpr double kRounding = 1e-12;
-    for (Vec3d* of : {&placement.decentre, &placement.tilt_deg})
-        for (double* value : {&of->x, &of->y, &of->z})
+    for (Vec3d* vector : {&placement.decentre, &placement.tilt_deg})
+        for (double* value : {&vector->x, &vector->y, &vector->z})
             if (std::fabs(*value) < kRounding) *value = 0;
     return placement;
 }
 
-/// Adds a plane that blocks nothing at the end of the lens.
-void put_before_film(LensSystem& lens, const SurfacePlacement& placement, double thickness) {
-    Surface carrier;
-    carrier.type = SurfaceType::aperture;
+/// Adds an auxiliary plane that blocks no light after the last surface. `thickness`: from the last surface to it, mm.
+void add_plane_before_film(LensSystem& lens, const SurfacePlacement& placement, double thickness) {
+    Surface plane;
+    plane.type = SurfaceType::aperture;
     double reach = hypotenuse(lens.film_width, lens.film_height);
     for (const Surface& surface : lens.surfaces) reach = std::max(reach, surface.clear_semi_diameter);
-    carrier.clear_semi_diameter = 100 * (reach + std::fabs(lens.film_distance));
-    carrier.placement = placement;
+    constexpr double kUnlimited = 100;  // times the size of the lens
+    plane.clear_semi_diameter = kUnlimited * (reach + std::fabs(lens.film_distance));
+    plane.placement = placement;
     lens.surfaces.back().thickness = thickness;
-    lens.surfaces.push_back(carrier);
+    lens.surfaces.push_back(plane);
 }
 
-bool is_alone(const std::vector<KeptRow>& kept, std::size_t index) {
-    return (index == 0 || kept[index - 1].row != kept[index].row) &&
-           (index + 1 == kept.size() || kept[index + 1].row != kept[index].row);
+/// True if no other surface was made from the same row as surface `index`.
+bool has_own_row(const std::vector<SurfaceRow>& surface_rows, std::size_t index) {
+    return (index == 0 || surface_rows[index - 1].row != surface_rows[index].row) &&
+           (index + 1 == surface_rows.size() || surface_rows[index + 1].row != surface_rows[index].row);
 }
 
 }  // namespace
 
-bool is_moved(const PrescriptionSurface& row) {
+bool is_displaced(const PrescriptionSurface& row) {
     return !(row.before == Affine<double>{}) || !(row.behind == Affine<double>{});
 }
 
-void set_placements(const Prescription& p, const std::vector<KeptRow>& kept, LensSystem& lens) {
-    Affine<double> from_last;      // from the axis of the last kept surface to here
-    double thickness = 0;    // along that path, as if it were straight
-    bool is_straight = true;  // true while there are only thicknesses
-    std::size_t next = 0;
+void set_placements(const Prescription& p, const std::vector<SurfaceRow>& surface_rows, LensSystem& lens) {
+    Affine<double> from_last;      // from the frame of the current row to the axis behind the last surface
+    double thickness = 0;         // sum of the thicknesses since then
+    bool is_straight = true;      // true if no tilt or decentre has followed since then
+    std::size_t next = 0;         // index of the next surface
     for (std::size_t row = 0; row < p.surfaces.size(); ++row) {
-        const PrescriptionSurface& here = p.surfaces[row];
-        const bool returns = here.behind == inverse_motion(here.before) && !(here.before == Affine<double>{});
-        const bool moves_alone =
-            returns && is_straight && next < kept.size() && kept[next].row == row && is_alone(kept, next);
-        from_last = from_last * here.before;
-        is_straight &= here.before == Affine<double>{};
-        for (; next < kept.size() && kept[next].row == row; ++next) {
+        const PrescriptionSurface& current = p.surfaces[row];
+        const bool returns = current.behind == inverse_motion(current.before) && !(current.before == Affine<double>{});
+        const bool moves_alone = returns && is_straight && next < surface_rows.size() &&
+                                 surface_rows[next].row == row && has_own_row(surface_rows, next);
+        from_last = from_last * current.before;
+        is_straight &= current.before == Affine<double>{};
+        for (; next < surface_rows.size() && surface_rows[next].row == row; ++next) {
             if (!is_straight) lens.surfaces[next].placement = placement_of(along_axis(-thickness) * from_last);
             from_last = {};
             thickness = 0;
@@ -62,18 +64,18 @@ void set_placements(const Prescription& p, const std::vector<KeptRow>& kept, Len
         if (moves_alone) {
             lens.surfaces[next - 1].placement.returns = true;
         } else {
-            from_last = from_last * here.behind;
-            is_straight &= here.behind == Affine<double>{};
+            from_last = from_last * current.behind;
+            is_straight &= current.behind == Affine<double>{};
         }
-        from_last = from_last * along_axis(here.thickness);
-        thickness += here.thickness;
+        from_last = from_last * along_axis(current.thickness);
+        thickness += current.thickness;
     }
     from_last = from_last * p.image_placement.frame();
-    constexpr double kSteepest = 0.5;  // cosine of 60 degrees
-    if (from_last.z.z > kSteepest)
+    constexpr double kMinCosine = 0.5;  // cosine of 60 degrees
+    if (from_last.z.z > kMinCosine)
         lens.film_placement = placement_of(along_axis(-thickness) * from_last);
     else
-        put_before_film(lens, placement_of(from_last * along_axis(-thickness)), 0);
+        add_plane_before_film(lens, placement_of(from_last * along_axis(-thickness)), 0);
 }
 
 void set_film(const Prescription& p, LensSystem& lens) {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\v\f";
 
+/// Converts UTF-16 to UTF-8. Throws LensFileError at the line of an invalid character.
 std::string from_utf16(std::string_view bytes, bool big_endian, const std::string& file) {
     const auto fail = [&](const std::string& out, const char* what) {
         const auto line = 1 + std::count(out.begin(), out.end(), '\n');
@@ -25,7 +26,7 @@ std::string from_utf16(std::string_view bytes, bool big_endian, const std::strin
         unsigned point = unit(i);
         if (point >= 0xd800 && point < 0xe000) {
             const unsigned low = i + 3 < bytes.size() ? unit(i + 2) : 0;
-            if (point >= 0xdc00 || low < 0xdc00 || low >= 0xe000) fail(out, "a character of it is broken");
+            if (point >= 0xdc00 || low < 0xdc00 || low >= 0xe000) fail(out, "has an invalid character");
             point = from_surrogates(point, low);
             i += 2;
         }
@@ -35,6 +36,7 @@ std::string from_utf16(std::string_view bytes, bool big_endian, const std::strin
     return out;
 }
 
+/// Converts Latin-1 to UTF-8.
 std::string from_latin1(std::string_view bytes) {
     std::string out;
     for (const char c : bytes) append_utf8(out, static_cast<unsigned char>(c));
@@ -51,7 +53,7 @@ std::string decoded_lens_text(std::string_view bytes, const std::string& file) {
     else if (bytes.starts_with("\xfe\xff"sv))
         text = from_utf16(bytes.substr(2), true, file);
     else if (bytes.size() > 3 && bytes[0] != 0 && bytes[1] == 0 && bytes[2] != 0 && bytes[3] == 0)
-        text = from_utf16(bytes, false, file);  // some programs omit the mark
+        text = from_utf16(bytes, false, file);  // some programs omit the byte-order mark
     else if (bytes.size() > 3 && bytes[0] == 0 && bytes[1] != 0 && bytes[2] == 0 && bytes[3] != 0)
         text = from_utf16(bytes, true, file);
     else if (bytes.starts_with("\xef\xbb\xbf"sv))
@@ -104,12 +106,12 @@ double LensLines::number_of(std::string_view word, const std::string& what) cons
     return *value;
 }
 
-int LensLines::whole_number_of(std::string_view word, const std::string& what, int least, int most) const {
+int LensLines::whole_number_of(std::string_view word, const std::string& what, int min, int max) const {
     std::string_view rest = word;
     const std::optional<std::int64_t> value = take_integer(rest);
-    if (!value || !rest.empty() || *value < least || *value > most)
-        fail(what + " must be a whole number from " + std::to_string(least) + " to " + std::to_string(most) +
-             "; it is " + in_quotes(word));
+    if (!value || !rest.empty() || *value < min || *value > max)
+        fail(what + " must be a whole number from " + std::to_string(min) + " to " + std::to_string(max) + "; it is " +
+             in_quotes(word));
     return static_cast<int>(*value);
 }
 
@@ -119,16 +121,16 @@ bool is_digits(std::string_view word) {
 
 bool is_infinity(std::string_view word) {
     if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
-    const std::string capital = word.size() < 10 ? upper_case(word) : std::string();
-    return capital == "INF" || capital == "INFINITY";
+    const std::string upper = word.size() < 10 ? upper_case(word) : std::string();
+    return upper == "INF" || upper == "INFINITY";
 }
 
 std::string short_list(const std::set<std::string>& names) {
-    constexpr std::size_t kMost = 12;
+    constexpr std::size_t kMaxListed = 12;
     std::string text;
     std::size_t count = 0;
     for (const std::string& name : names) {
-        if (count++ == kMost) return text + " and " + std::to_string(names.size() - kMost) + " more";
+        if (count++ == kMaxListed) return text + " and " + std::to_string(names.size() - kMaxListed) + " more";
         text += (text.empty() ? "" : ", ") + name;
     }
     return text;

@@ -1,5 +1,5 @@
 #pragma once
-// Parts of the reader and the writer of realcam's own lens files.
+// Parts of the reader and the writer of realcam's own lens files, which are TOML.
 
 #include <cmath>
 #include <initializer_list>
@@ -27,22 +27,24 @@ SurfaceForm read_form(const TomlTable& table);
 /// extend. Throws LensFileError.
 ApertureShape read_aperture(const TomlTable& table, double rim);
 
-/// Return lines of a surface's table, from which the readers restore the form and the aperture shape.
+/// Return the lines of a surface's table from which read_form and read_aperture restore the form and the aperture
+/// shape; empty for the default.
 std::string form_as_toml(const SurfaceForm& form);
 std::string aperture_as_toml(const ApertureShape& shape);
 
-/// Returns a number as a TOML float: without a point, TOML reads a 64-bit integer.
+/// Formats a number as a TOML float, with ".0" if needed: TOML reads a number without a point as a 64-bit integer.
 inline std::string toml_number(double value) {
     const std::string text = exact_number(value);
     return text.find_first_of(".e") == text.npos ? text + ".0" : text;
 }
 
-/// Returns a number near `near` that `back` maps exactly to `value`; std::nullopt if rounding leaves no such number.
-template <class Back>
-std::optional<double> before_rounding(double near, double value, const Back& back) {
+/// Returns the double that `convert` maps exactly to `value`, among `estimate` and its two neighbours; std::nullopt if
+/// none of them does. Used to write a value in a customary unit without loss.
+template <class Convert>
+std::optional<double> exact_preimage(double estimate, double value, const Convert& convert) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    for (const double candidate : {near, std::nextafter(near, kInfinity), std::nextafter(near, -kInfinity)})
-        if (std::isfinite(candidate) && back(candidate) == value) return candidate;
+    for (const double candidate : {estimate, std::nextafter(estimate, kInfinity), std::nextafter(estimate, -kInfinity)})
+        if (std::isfinite(candidate) && convert(candidate) == value) return candidate;
     return std::nullopt;
 }
 

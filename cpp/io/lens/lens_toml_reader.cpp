@@ -24,6 +24,7 @@ SurfaceType read_type(const TomlTable& table) {
     table.fail("unknown type \"" + type + "\"; expected refracting, mirror, stop or aperture", table.find("type"));
 }
 
+/// Reads the coefficients of r^4, r^6, ..., in this order.
 std::vector<double> read_aspheric_coefficients(const TomlTable& table) {
     const auto coefficients = table.table("aspheric_coefficients");
     std::vector<double> values;
@@ -46,15 +47,18 @@ std::vector<double> read_aspheric_coefficients(const TomlTable& table) {
     return values;
 }
 
-/// `of`: prefix of the keys.
-SurfacePlacement read_placement(const TomlTable& table, const std::string& of = "") {
+/// Reads decentre and tilt. `prefix`: of the keys, empty for a surface, "film_" for the film.
+SurfacePlacement read_placement(const TomlTable& table, const std::string& prefix = "") {
     SurfacePlacement placement;
-    const std::vector<double> decentre = table.numbers(of + "decentre_mm", 3), tilt = table.numbers(of + "tilt_deg", 3);
+    const std::vector<double> decentre = table.numbers(prefix + "decentre_mm", 3),
+                              tilt = table.numbers(prefix + "tilt_deg", 3);
     if (!decentre.empty()) placement.decentre = {decentre[0], decentre[1], decentre[2]};
     if (!tilt.empty()) placement.tilt_deg = {tilt[0], tilt[1], tilt[2]};
     return placement;
 }
 
+/// Reads a surface from its table. `glasses`: the file's table "glass". `is_zoomed`: its thickness is specified by the
+/// zoom positions.
 Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& glasses, const LensCoatings& coatings,
                      bool is_last, bool is_zoomed) {
     Surface surface;
@@ -90,7 +94,7 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
     if (const auto radius = table.number("radius_of_curvature_mm")) {
         if (*radius == 0)
             table.fail(
-                "a radius of curvature of 0 is no surface; leave it out for a plane, and give the aperture "
+                "a radius of curvature must not be 0; leave it out for a plane, and specify the aperture "
                 "stop as type = \"stop\"",
                 table.find("radius_of_curvature_mm"));
         surface.curvature = 1 / *radius;
@@ -104,10 +108,10 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
     surface.conic = table.number("conic").value_or(0);
     surface.aspheric = read_aspheric_coefficients(table);
     if (surface.type == SurfaceType::mirror && table.find("material"))
-        table.fail("a mirror has no material of its own; what lies before it lies behind it too",
+        table.fail("a mirror has no material of its own: the medium behind it is that before it",
                    table.find("material"));
     if (table.find("material")) surface.material = read_material(table, glasses);
-    surface.coating = coatings.of(table);
+    surface.coating = coatings.coating_of(table);
     const auto thickness = table.number("thickness_mm");
     if (!thickness && !is_last && !is_zoomed)
         table.fail("\"thickness_mm\" is missing: the axial distance to the next surface");
@@ -165,8 +169,8 @@ void read_focusing(const TomlTable& file, LensSystem& lens) {
     lens.focusing.group_last = static_cast<int>(group[1]) - 1;
 }
 
-/// Checks the finished lens. The check does not know the file: its error gets the line of the surface that it names, or
-/// else of the part of the file that it concerns.
+/// Runs a check of the finished lens that throws LensFileError without file and line. The error is thrown again with
+/// the line of the surface that it names, or else of `part`, the part of the file that it concerns.
 template <class Check>
 void check_part(const TomlTable& file, const toml::node& part, const toml::array& surfaces, Check&& check) {
     try {
@@ -177,6 +181,7 @@ void check_part(const TomlTable& file, const toml::node& part, const toml::array
     }
 }
 
+/// Checks the lens; errors name the line of the part of the file that is wrong.
 void check_lens(const TomlTable& file, const toml::array& surfaces, const LensSystem& lens) {
     const auto part = [&](std::string_view table, std::string_view key = {}) -> const toml::node& {
         const toml::node* node = file.find(table);
@@ -189,15 +194,18 @@ void check_lens(const TomlTable& file, const toml::array& surfaces, const LensSy
     check_part(file, part("focus", "group"), surfaces, [&] { check_focusing(lens); });
 }
 
+/// Radius of curvature of the film, mm; infinity without the key.
 double film_radius(const TomlTable& file) {
     const char* const key = "film_radius_of_curvature_mm";
     const double radius = file.number(key).value_or(kInfinity);
     if (!(std::fabs(radius) >= kShortestRadius))
-        file.fail('"' + std::string(key) + "\" must be a radius; below 0: the film is hollow towards the lens",
-                  file.find(key));
+        file.fail(
+            '"' + std::string(key) + "\" must be a radius; it is negative if the film is concave towards the lens",
+            file.find(key));
     return radius;
 }
 
+/// Sets the film distance: as specified, or that of the zoom position, or that of best focus at infinity.
 void set_film_distance(const TomlTable& file, LensSystem& lens) {
     const auto distance = file.number("film_distance_mm");
     if (distance == 0.0) lens.film_distance = kFilmContact;
@@ -217,7 +225,7 @@ void set_film_distance(const TomlTable& file, LensSystem& lens) {
     if (const std::string why = film_distance_error(lens); !why.empty()) file.fail(why, file.find("film_distance_mm"));
 }
 
-/// Sets focus and aperture as they were when the lens was saved.
+/// Sets focus distance and aperture as specified in the file; without the keys, infinity and wide open.
 void set_rings(const TomlTable& file, LensSystem& lens) {
     if (!lens.zoom.positions.empty())
         lens.focus_distance = lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].focus_distance;
@@ -284,7 +292,7 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file, con
     const LensCoatings coatings(top, glasses);
     const toml::array* surfaces = root["surface"].as_array();
     if (!surfaces || !surfaces->is_array_of_tables()) top.fail("the lens has no surfaces; expected tables [[surface]]");
-    // A limit, because each may contain a long table of a glass, which is copied.
+    // Limited before reading, because each surface may contain a long table of a glass, which is copied.
     if (surfaces->size() > static_cast<std::size_t>(kMaxSurfaces))
         top.fail("the lens has " + std::to_string(surfaces->size()) + " surfaces; at most " +
                      std::to_string(kMaxSurfaces) + " are supported",

@@ -1,3 +1,5 @@
+// Writer of realcam's own lens files, which are TOML.
+
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -14,6 +16,8 @@
 namespace realcam::io {
 namespace {
 
+/// Writes a lens. The parts of the text are collected in strings, because tables of glasses and coatings precede the
+/// surfaces that use them.
 class TomlWriter {
 public:
     explicit TomlWriter(const LensSystem& lens) : lens_(lens) {}
@@ -40,6 +44,7 @@ public:
     }
 
 private:
+    // Lines of a table: a key and its value.
     static std::string key(const std::string& name, const std::string& value) { return name + " = " + value + '\n'; }
     static std::string number(const std::string& name, double value) { return key(name, toml_number(value)); }
 
@@ -47,10 +52,11 @@ private:
         return '[' + toml_number(v.x) + ", " + toml_number(v.y) + ", " + toml_number(v.z) + ']';
     }
 
+    /// A text in quotes. Throws InputError if no lens file can hold it.
     static std::string text(const std::string& value) {
         if (!is_utf8(value) || printable(value) != value)
             throw InputError("the text " + in_quotes(value) +
-                             " cannot stand in a lens file: it holds control characters, or is no UTF-8");
+                             " cannot be written to a lens file: it has control characters, or is not UTF-8");
         std::string quoted = "\"";
         for (const char c : value) {
             if (c == '"' || c == '\\') quoted += '\\';
@@ -59,15 +65,16 @@ private:
         return quoted + '"';
     }
 
+    /// Zoom position, focus distance and aperture, where they differ from the reader's defaults.
     std::string write_rings() const {
         std::string rings;
-        double rest = kInfinity;
+        double default_distance = kInfinity;
         if (!lens_.zoom.positions.empty()) {
             const ZoomPosition& current = lens_.zoom.positions[static_cast<std::size_t>(lens_.zoom.current)];
             rings += key("zoom_position", text(current.name));
-            rest = current.focus_distance;
+            default_distance = current.focus_distance;
         }
-        if (lens_.focus_distance != rest)
+        if (lens_.focus_distance != default_distance)
             rings +=
                 key("focus_distance_mm", std::isinf(lens_.focus_distance) ? "inf" : toml_number(lens_.focus_distance));
         if (lens_.stop_semi_diameter != lens_.stop().clear_semi_diameter)
@@ -76,15 +83,15 @@ private:
     }
 
     void write_surface(const Surface& s) {
-        body_ += "\n[[surface]]   # " + std::to_string(++count_) + '\n';
+        body_ += "\n[[surface]]   # " + std::to_string(++surface_count_) + '\n';
         static const char* kTypes[] = {"refracting", "mirror", "stop", "aperture"};
         if (s.type != SurfaceType::refracting)
             body_ += key("type", std::string("\"") + kTypes[static_cast<int>(s.type)] + '"');
         if (s.bends_light() && s.curvature != 0) {
-            const auto radius = before_rounding(1 / s.curvature, s.curvature, [](double r) { return 1 / r; });
+            const auto radius = exact_preimage(1 / s.curvature, s.curvature, [](double r) { return 1 / r; });
             body_ += radius ? number("radius_of_curvature_mm", *radius) : number("curvature_per_mm", s.curvature);
         }
-        if (count_ < lens_.surfaces.size()) body_ += number("thickness_mm", s.thickness);
+        if (surface_count_ < lens_.surfaces.size()) body_ += number("thickness_mm", s.thickness);
         if (s.type == SurfaceType::refracting && !(s.material == Glass::air()))
             body_ += key("material", material(s.material));
         body_ += number("clear_semi_diameter_mm", s.clear_semi_diameter);
@@ -105,7 +112,8 @@ private:
         if (!(s.coating == Coating())) body_ += key("coating", coating(s.coating));
     }
 
-    /// Returns the shortest form from which the reader restores exactly this glass; otherwise adds a table.
+    /// Returns the value of the key "material": the shortest one from which the reader restores exactly this glass.
+    /// Adds a table [glass.NAME] if needed.
     std::string material(const Glass& glass) {
         if (glass.has_one_index()) {
             const double index = glass.index(kLineD_nm);
@@ -124,30 +132,33 @@ private:
                 if (pair == glass) return '[' + toml_number(*n_d) + ", " + toml_number(*v_d) + ']';
             }
         }
-        for (std::size_t i = 0; i < own_glasses_.size(); ++i)
-            if (own_glasses_[i].second == glass) return text(own_glasses_[i].first);
-        if (is_catalogued(glass)) return text(glass.label);
+        for (std::size_t i = 0; i < file_glasses_.size(); ++i)
+            if (file_glasses_[i].second == glass) return text(file_glasses_[i].first);
+        if (uses_catalogue_name(glass)) return text(glass.label);
         return text(add_glass(glass));
     }
 
-    /// True if the catalogue has this glass. A glass table of the file takes precedence over the catalogue, so a name
-    /// must not be used for both.
-    bool is_catalogued(const Glass& glass) {
-        if (names_.contains(glass.label) || !catalogue_name_of(glass)) return false;
-        catalogued_.insert(glass.label);
+    /// True if the glass can be written by its catalogue name, which is then reserved: a glass table of the file takes
+    /// precedence over the catalogue, so that no table may have the same name.
+    bool uses_catalogue_name(const Glass& glass) {
+        if (used_names_.contains(glass.label) || !catalogue_name_of(glass)) return false;
+        catalogue_names_.insert(glass.label);
         return true;
     }
 
-    std::string unused(const std::string& wanted, const std::string& otherwise) {
-        std::string name = wanted.empty() || named_coating(wanted) ? otherwise : wanted;
-        for (int i = 2; names_.contains(name) || catalogued_.contains(name); ++i)
-            name = (wanted.empty() ? otherwise : wanted) + " (" + std::to_string(i) + ')';
-        names_.insert(name);
+    /// Returns a name that no table and no used catalogue glass has: `preferred`, or else `fallback`, numbered if
+    /// needed.
+    std::string unused_name(const std::string& preferred, const std::string& fallback) {
+        std::string name = preferred.empty() || named_coating(preferred) ? fallback : preferred;
+        for (int i = 2; used_names_.contains(name) || catalogue_names_.contains(name); ++i)
+            name = (preferred.empty() ? fallback : preferred) + " (" + std::to_string(i) + ')';
+        used_names_.insert(name);
         return name;
     }
 
+    /// Adds a table [glass.NAME], and returns its name.
     std::string add_glass(const Glass& glass) {
-        const std::string name = unused(glass.label, "glass");
+        const std::string name = unused_name(glass.label, "glass");
         const Glass::Parts parts = glass.parts();
         const auto listed = [](const std::vector<double>& values, std::size_t first, std::size_t step) {
             std::string list;
@@ -169,10 +180,11 @@ private:
                         toml_number(point.index) + ']';
             glasses_ += key("table", '[' + rows + ']');
         }
-        own_glasses_.emplace_back(name, glass);
+        file_glasses_.emplace_back(name, glass);
         return name;
     }
 
+    /// Complex indices as an array of [wavelength in nm, n, k].
     static std::string points(const CoatingMaterial& material) {
         std::string rows;
         for (const CoatingMaterial::Point& p : material.points)
@@ -181,11 +193,12 @@ private:
         return '[' + rows + ']';
     }
 
+    /// Returns the value of the key "coating". Adds a table [coating.NAME] if needed.
     std::string coating(const Coating& coating) {
         if (const auto known = named_coating(coating.name); known && *known == coating) return text(coating.name);
-        for (const auto& [name, own] : own_coatings_)
+        for (const auto& [name, own] : file_coatings_)
             if (own == coating) return text(name);
-        const std::string name = unused(coating.name, "coating");
+        const std::string name = unused_name(coating.name, "coating");
         std::string table = "\n[coating." + text(name) + "]\n";
         if (name != coating.name) table += key("label", text(coating.name));
         if (coating.kind == CoatingKind::reflectance) table += number("reflectance", coating.reflectance);
@@ -212,7 +225,7 @@ private:
         if (!layers.empty() || coating.kind == CoatingKind::bare || coating.kind == CoatingKind::layers)
             table += "layers = [\n" + layers + "]\n";
         coatings_ += table;
-        own_coatings_.emplace_back(name, coating);
+        file_coatings_.emplace_back(name, coating);
         return text(name);
     }
 
@@ -220,8 +233,8 @@ private:
         const IrisShape& iris = lens_.iris;
         if (iris == IrisShape()) return;
         body_ += "\n[iris]\n" + key("blades", std::to_string(iris.blades)) + number("rounding", iris.rounding);
-        const auto degrees = before_rounding(iris.rotation_rad * 180 / std::numbers::pi, iris.rotation_rad,
-                                             [](double d) { return d * std::numbers::pi / 180; });
+        const auto degrees = exact_preimage(iris.rotation_rad * 180 / std::numbers::pi, iris.rotation_rad,
+                                            [](double d) { return d * std::numbers::pi / 180; });
         body_ += degrees ? number("rotation_deg", *degrees) : number("rotation_rad", iris.rotation_rad);
     }
 
@@ -231,7 +244,7 @@ private:
         body_ += "\n[focus]\n";
         if (rule.nearest_mm > 0) {
             const auto metres =
-                before_rounding(rule.nearest_mm / 1000, rule.nearest_mm, [](double m) { return 1000 * m; });
+                exact_preimage(rule.nearest_mm / 1000, rule.nearest_mm, [](double m) { return 1000 * m; });
             body_ += metres ? number("nearest_m", *metres) : number("nearest_mm", rule.nearest_mm);
         }
         if (rule.moves_group())
@@ -254,11 +267,12 @@ private:
     }
 
     const LensSystem& lens_;
-    std::string glasses_, coatings_, body_;
-    std::size_t count_ = 0;
-    std::set<std::string> names_, catalogued_;
-    std::vector<std::pair<std::string, Glass>> own_glasses_;
-    std::vector<std::pair<std::string, Coating>> own_coatings_;
+    std::string glasses_, coatings_, body_;  ///< tables of glasses and coatings; all other tables
+    std::size_t surface_count_ = 0;  ///< surfaces written so far
+    std::set<std::string> used_names_;  ///< of the tables added so far
+    std::set<std::string> catalogue_names_;  ///< of the catalogue glasses used so far
+    std::vector<std::pair<std::string, Glass>> file_glasses_;
+    std::vector<std::pair<std::string, Coating>> file_coatings_;
 };
 
 }  // namespace

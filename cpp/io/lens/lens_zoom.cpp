@@ -28,9 +28,9 @@ LensZoom::LensZoom(const TomlTable& file) : file_(file) {
     const toml::node* node = file.find("zoom");
     const toml::array* tables = node ? node->as_array() : nullptr;
     if (node && (!tables || !tables->is_array_of_tables())) file.fail("zoom positions are tables [[zoom]]", node);
-    if (tables && tables->size() > static_cast<std::size_t>(kMostFileZoomPositions))
+    if (tables && tables->size() > static_cast<std::size_t>(kMaxFileZoomPositions))
         file.fail("the lens has " + std::to_string(tables->size()) + " zoom positions; at most " +
-                      std::to_string(kMostFileZoomPositions) + " are read",
+                      std::to_string(kMaxFileZoomPositions) + " are read",
                   node);
     for (std::size_t i = 0; tables && i < tables->size(); ++i) {
         Position position{TomlTable(*(*tables)[i].as_table(), file.file()), {}, {}};
@@ -63,7 +63,7 @@ void LensZoom::check_same_surfaces() const {
         const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
         const auto& first = positions_.front().thicknesses;
         if (!std::equal(first.begin(), first.end(), position.thicknesses.begin(), position.thicknesses.end(), same))
-            position.table.fail("all zoom positions have to give the thicknesses of the same surfaces");
+            position.table.fail("all zoom positions must have the thicknesses of the same surfaces");
     }
 }
 
@@ -73,7 +73,7 @@ bool LensZoom::changes(int surface) const {
                        [&](const auto& entry) { return entry.first == surface; });
 }
 
-void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given, const KeepGoing& keep_going) const {
+void LensZoom::apply(LensSystem& lens, const std::vector<bool>& has_thickness, const KeepGoing& keep_going) const {
     if (positions_.empty()) return;
     const auto current = static_cast<std::size_t>(current_.value_or(0));
     const int count = static_cast<int>(lens.surfaces.size());
@@ -85,12 +85,12 @@ void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given, const Kee
                                            "; the last surface has the film distance");
         const auto index = static_cast<std::size_t>(surface) - 1;
         zoom.surfaces.push_back(surface - 1);
-        if (!given[index]) {
+        if (!has_thickness[index]) {
             lens.surfaces[index].thickness = value;
         } else if (!current_ && lens.surfaces[index].thickness != value) {
             throw LensFileError(
                 "the thickness is not that of the first zoom position, " + in_quotes(positions_.front().name) +
-                    "; leave it out, or say in which \"zoom_position\" the file gives the lens",
+                    "; leave it out, or specify the \"zoom_position\" in which the file describes the lens",
                 file_.file(), static_cast<int>(positions_.front().table.raw().source().begin.line), surface);
         }
     }
@@ -100,45 +100,47 @@ void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given, const Kee
         for (const int i : {rule.group_first - 1, rule.group_last})
             if (i >= 0 && i + 1 < count && !changes(i + 1)) zoom.surfaces.push_back(i);
     std::sort(zoom.surfaces.begin(), zoom.surfaces.end());
-    for (const Position& from : positions_) {
-        ZoomPosition to;
-        to.name = from.name;
+    for (const Position& position : positions_) {
+        ZoomPosition result;
+        result.name = position.name;
         for (const int i : zoom.surfaces) {
-            const auto found = std::find_if(from.thicknesses.begin(), from.thicknesses.end(),
+            const auto found = std::find_if(position.thicknesses.begin(), position.thicknesses.end(),
                                             [&](const auto& entry) { return entry.first == i + 1; });
-            to.thicknesses.push_back(
-                found == from.thicknesses.end() ? lens.surfaces[static_cast<std::size_t>(i)].thickness : found->second);
+            result.thicknesses.push_back(found == position.thicknesses.end()
+                                             ? lens.surfaces[static_cast<std::size_t>(i)].thickness
+                                             : found->second);
         }
-        to.film_distance = from.table.number("film_distance_mm").value_or(0);
-        if (to.film_distance == 0 && from.table.find("film_distance_mm")) to.film_distance = kFilmContact;
-        to.focus_distance = from.table.number("focus_distance_mm").value_or(kInfinity);
-        const auto stop = from.table.number("stop_semi_diameter_mm");
+        result.film_distance = position.table.number("film_distance_mm").value_or(0);
+        if (result.film_distance == 0 && position.table.find("film_distance_mm")) result.film_distance = kFilmContact;
+        result.focus_distance = position.table.number("focus_distance_mm").value_or(kInfinity);
+        const auto stop = position.table.number("stop_semi_diameter_mm");
         if (stop && !(*stop > 0))
-            from.table.fail("\"stop_semi_diameter_mm\" must be positive", from.table.find("stop_semi_diameter_mm"));
-        to.stop_semi_diameter = stop.value_or(0);  // 0: constant
-        if ((from.table.find("stop_semi_diameter_mm") == nullptr) !=
+            position.table.fail("\"stop_semi_diameter_mm\" must be positive",
+                                position.table.find("stop_semi_diameter_mm"));
+        result.stop_semi_diameter = stop.value_or(0);  // 0: constant
+        if ((position.table.find("stop_semi_diameter_mm") == nullptr) !=
             (positions_.front().table.find("stop_semi_diameter_mm") == nullptr))
-            from.table.fail("either all zoom positions give the stop's semi-diameter, or none");
-        zoom.positions.push_back(std::move(to));
+            position.table.fail("either all zoom positions must have \"stop_semi_diameter_mm\", or none");
+        zoom.positions.push_back(std::move(result));
     }
     if (zoom.positions[current].stop_semi_diameter > 0)
         lens.surfaces[static_cast<std::size_t>(lens.stop_index())].clear_semi_diameter =
             zoom.positions[current].stop_semi_diameter;
     Checkpoint checkpoint(keep_going);
-    constexpr std::size_t kWork = 1 << 14;  // a few milliseconds each
+    constexpr std::size_t kWorkPerPosition = 1 << 14;  // checkpoint work: a few milliseconds
     for (std::size_t i = 0; i < positions_.size(); ++i) {
-        checkpoint.pass(kWork);
+        checkpoint.pass(kWorkPerPosition);
         const TomlTable& table = positions_[i].table;
         ZoomPosition& position = zoom.positions[i];
         if (table.find("film_distance_mm")) continue;
-        LensSystem there = at_zoom_position(lens, static_cast<int>(i));
+        LensSystem zoomed = at_zoom_position(lens, static_cast<int>(i));
         try {
-            check_surfaces(there);
+            check_surfaces(zoomed);
         } catch (const LensFileError& error) {
             throw LensFileError("in zoom position " + in_quotes(position.name) + ": " + error.detail, file_.file(),
                                 static_cast<int>(table.raw().source().begin.line), error.surface);
         }
-        position.film_distance = best_focus_distance(there, lens.wavelength_nm, kInfinity);
+        position.film_distance = best_focus_distance(zoomed, lens.wavelength_nm, kInfinity);
         if (!(position.film_distance > 0))
             table.fail(
                 "the lens makes no real image of infinity behind its last surface; \"film_distance_mm\" is "

@@ -8,34 +8,37 @@ namespace {
 
 constexpr int kFormat = 1;
 
+/// RaiseFileError for sensor files.
 [[noreturn]] void raise_input_error(const std::string& message, const std::string& file, int line, int) {
     throw InputError(file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + message);
 }
 
-double number_or(const TomlTable& table, const char* key, double otherwise) {
-    return table.number(key).value_or(otherwise);
+double number_or(const TomlTable& table, const char* key, double default_value) {
+    return table.number(key).value_or(default_value);
 }
 
+/// Returns a number of the key as a whole number; an error if it is not whole, or beyond a million.
 int whole(const TomlTable& table, const char* key, double value) {
     if (value != std::floor(value) || std::fabs(value) > 1e6)
         table.fail('"' + std::string(key) + "\" must be a whole number", table.find(key));
     return static_cast<int>(value);
 }
 
-/// Reads the rows of a table of numbers; the number of columns of each row must be one of `widths`.
+/// Reads the rows of a table of numbers; empty if the key is absent. The number of columns of each row must be one of
+/// `widths`. `columns`: their names, for messages.
 std::vector<std::vector<double>> read_rows(const TomlTable& table, const char* key, std::vector<std::size_t> widths,
-                                           const std::string& wanted) {
+                                           const std::string& columns) {
     const toml::node* node = table.find(key);
     if (!node) return {};
-    const std::string what = '"' + std::string(key) + "\" must be a table of " + wanted;
-    if (!node->is_array() || node->as_array()->empty()) table.fail(what, node);
+    const std::string message = '"' + std::string(key) + "\" must be a table of " + columns;
+    if (!node->is_array() || node->as_array()->empty()) table.fail(message, node);
     std::vector<std::vector<double>> rows;
     for (const toml::node& item : *node->as_array()) {
         const toml::array* row = item.as_array();
-        if (!row) table.fail(what, &item);
-        bool fits = false;
-        for (std::size_t width : widths) fits |= row->size() == width;
-        if (!fits) table.fail(what, &item);
+        if (!row) table.fail(message, &item);
+        bool has_valid_width = false;
+        for (std::size_t width : widths) has_valid_width |= row->size() == width;
+        if (!has_valid_width) table.fail(message, &item);
         std::vector<double> values;
         for (const toml::node& value : *row)
             values.push_back(table.as_number(value, "each value of " + std::string(key)));
@@ -44,12 +47,14 @@ std::vector<std::vector<double>> read_rows(const TomlTable& table, const char* k
     return rows;
 }
 
-std::vector<SensorPoint> read_points(const TomlTable& table, const char* key, const std::string& wanted) {
+/// Reads a curve: rows of abscissa and value.
+std::vector<SensorPoint> read_points(const TomlTable& table, const char* key, const std::string& columns) {
     std::vector<SensorPoint> points;
-    for (const std::vector<double>& row : read_rows(table, key, {2}, wanted)) points.push_back({row[0], row[1]});
+    for (const std::vector<double>& row : read_rows(table, key, {2}, columns)) points.push_back({row[0], row[1]});
     return points;
 }
 
+/// Reads the pixels: pitch, resolution, colour filters, quantum efficiency, cover glass and angular response.
 void read_pixels(const TomlTable& table, Sensor& sensor) {
     sensor.pixel_pitch_um = number_or(table, "pixel_pitch_um", 0);
     if (const auto size = table.numbers("resolution", 2); !size.empty()) {
@@ -69,6 +74,7 @@ void read_pixels(const TomlTable& table, Sensor& sensor) {
     sensor.angular_response = read_points(table, "angular_response", "[degrees, relative response]");
 }
 
+/// Reads the conversion from electrons to digital numbers (DN).
 void read_conversion(const TomlTable& table, SensorConversion& conversion) {
     conversion.gain_dn_per_e = number_or(table, "gain_dn_per_e", conversion.gain_dn_per_e);
     conversion.largest_gain_db = number_or(table, "largest_gain_db", conversion.largest_gain_db);
@@ -78,6 +84,7 @@ void read_conversion(const TomlTable& table, SensorConversion& conversion) {
     conversion.converter_noise_dn = number_or(table, "converter_noise_dn", conversion.converter_noise_dn);
 }
 
+/// Reads the parameters of the noise (EMVA 1288).
 void read_noise(const TomlTable& table, SensorNoise& noise) {
     noise.read_noise_e = number_or(table, "read_noise_e", noise.read_noise_e);
     noise.row_noise_e = number_or(table, "row_noise_e", noise.row_noise_e);
@@ -138,11 +145,12 @@ Sensor sensor_from_table(const toml::table& root, const std::string& file) {
     return sensor;
 }
 
+/// Returns the contents of a file. Throws InputError.
 std::string text_of_file(const std::string& path) {
-    constexpr std::uint64_t kLargest = 16 << 20;  // bytes; the bundled sensors have some thousand
+    constexpr std::uint64_t kMaxBytes = 16 << 20;  // bytes; the bundled sensors have some thousand
     try {
         RegularFile file(path);
-        if (file.size() > kLargest) throw InputError(path + ": is larger than 16 MiB; expected a sensor file (.toml)");
+        if (file.size() > kMaxBytes) throw InputError(path + ": is larger than 16 MiB; expected a sensor file (.toml)");
         std::string text(file.size(), '\0');
         text.resize(file.read(text.data(), text.size()));
         return text;

@@ -10,9 +10,7 @@
 
 namespace realcam::io {
 
-// Files of sensors/, compiled into the library; the definition is generated.
-
-/// Returns the bundled sensors, in the order of the file names.
+/// Returns the bundled sensor files (sensors/*.toml), sorted by file name. The definition is generated.
 std::span<const BundledFile> bundled_sensor_files();
 
 /// Returns the names of the bundled sensors, sorted.

@@ -10,18 +10,19 @@
 namespace realcam::io {
 namespace {
 
-constexpr std::size_t kColumns = 80, kIndent = 2, kGap = 2;
+constexpr std::size_t kColumns = 80;           // width of the page
+constexpr std::size_t kIndent = 2, kGap = 2;  // blanks before a row, and between its columns
 /// Greatest width of the column of option names. After longer names, the text begins on the next line.
-constexpr std::size_t kWidestName = 30;
+constexpr std::size_t kMaxNameWidth = 30;
 
-/// Returns the width in columns, where continuation bytes of UTF-8 count 0.
+/// Returns the width of a text in columns, one per character of UTF-8.
 std::size_t width_of(std::string_view text) {
     return static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
-/// Appends words, and begins a line, indented by `indent` blanks, before a word that would exceed the width. `column`:
-/// start of the text.
+/// Appends a text word by word. A word that would exceed the width begins a new line, indented by `indent` blanks.
+/// `column`: number of columns already used in the first line.
 void append_wrapped(std::string& page, const std::string& text, std::size_t column, std::size_t indent) {
     std::istringstream words(text);
     bool begins_line = true;
@@ -40,10 +41,11 @@ void append_wrapped(std::string& page, const std::string& text, std::size_t colu
     page += '\n';
 }
 
+/// Appends a section, whose descriptions are aligned in a column.
 void append_section(std::string& page, const HelpPage::Section& section) {
-    std::size_t widest = 0;
-    for (const auto& [name, text] : section.rows) widest = std::max(widest, width_of(name));
-    const std::size_t column = kIndent + std::min(widest, kWidestName) + kGap;
+    std::size_t max_width = 0;
+    for (const auto& [name, text] : section.rows) max_width = std::max(max_width, width_of(name));
+    const std::size_t column = kIndent + std::min(max_width, kMaxNameWidth) + kGap;
     page += '\n' + section.title + ":\n";
     for (const auto& [name, text] : section.rows) {
         const std::size_t end = kIndent + width_of(name);
@@ -84,14 +86,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     for (std::size_t i = 0; i < a.size(); ++i) {
         std::size_t diagonal = std::exchange(row[0], i + 1);
         for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t changed = diagonal + (lower(a[i]) != lower(b[j]));
+            const std::size_t substituted = diagonal + (lower(a[i]) != lower(b[j]));
             diagonal = row[j + 1];
-            row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
+            row[j + 1] = std::min({substituted, row[j] + 1, diagonal + 1});
         }
     }
     return row.back();
 }
 
+/// True if the text contains the part, ignoring case.
 bool contains(std::string_view text, std::string_view part) {
     return std::search(text.begin(), text.end(), part.begin(), part.end(),
                        [](char x, char y) { return lower(x) == lower(y); }) != text.end();
@@ -102,28 +105,29 @@ bool contains(std::string_view text, std::string_view part) {
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
     // Limits, because the work grows with the product of the lengths: longer names are not misspellings, and
     // suggestions from longer lists are not useful.
-    constexpr std::size_t kLongestName = 64, kMostCandidates = 10000;
-    if (name.size() > kLongestName || candidates.size() > kMostCandidates) return {};
-    std::vector<std::pair<std::size_t, std::string_view>> near;
+    constexpr std::size_t kMaxNameLength = 64, kMaxCandidates = 10000;
+    if (name.size() > kMaxNameLength || candidates.size() > kMaxCandidates) return {};
+    std::vector<std::pair<std::size_t, std::string_view>> closest;
     for (const std::string& candidate : candidates) {
-        if (candidate.size() > kLongestName) continue;
-        const bool part = !name.empty() && (contains(candidate, name) || contains(name, candidate));
-        const std::size_t distance = part ? 0 : edit_distance(name, candidate);
+        if (candidate.size() > kMaxNameLength) continue;
+        const bool is_part = !name.empty() && (contains(candidate, name) || contains(name, candidate));
+        const std::size_t distance = is_part ? 0 : edit_distance(name, candidate);
         // Compares the first word as well ("tesar" for "tessar-50mm"), with a stricter limit because it is short.
         const std::string_view word = std::string_view(candidate).substr(0, candidate.find('-'));
-        const std::size_t of_word = edit_distance(name, word);
+        const std::size_t word_distance = edit_distance(name, word);
         if (distance <= std::max<std::size_t>(2, candidate.size() / 3))
-            near.emplace_back(distance, candidate);
-        else if (of_word <= std::max<std::size_t>(1, word.size() / 3))
-            near.emplace_back(of_word, candidate);
+            closest.emplace_back(distance, candidate);
+        else if (word_distance <= std::max<std::size_t>(1, word.size() / 3))
+            closest.emplace_back(word_distance, candidate);
     }
-    std::sort(near.begin(), near.end());
-    if (near.size() > 3) near.resize(3);
-    if (near.empty()) return {};
+    std::sort(closest.begin(), closest.end());
+    constexpr std::size_t kMaxSuggestions = 3;
+    if (closest.size() > kMaxSuggestions) closest.resize(kMaxSuggestions);
+    if (closest.empty()) return {};
     std::string text = " (did you mean ";
-    for (std::size_t i = 0; i < near.size(); ++i) {
-        if (i > 0) text += i + 1 == near.size() ? " or " : ", ";
-        text += '"' + std::string(near[i].second) + '"';
+    for (std::size_t i = 0; i < closest.size(); ++i) {
+        if (i > 0) text += i + 1 == closest.size() ? " or " : ", ";
+        text += '"' + std::string(closest[i].second) + '"';
     }
     return text + "?)";
 }

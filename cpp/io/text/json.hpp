@@ -12,13 +12,14 @@
 
 namespace realcam::io {
 
-/// Allowed numbers: Python also writes infinite numbers and NaN, which JSON does not have.
+/// Numbers that the parser accepts. JSON has only finite ones; Python also writes Infinity, -Infinity and NaN.
 enum class JsonNumbers { finite, with_infinity };
 
+/// Value of a JSON document.
 class Json {
 public:
     using Array = std::vector<Json>;
-    /// Sorted by name.
+    /// Members sorted by name.
     using Object = std::vector<std::pair<std::string, Json>>;
 
     Json() = default;
@@ -41,12 +42,15 @@ public:
 
     bool is_null() const { return std::holds_alternative<std::monostate>(value_); }
     bool is_number() const { return std::holds_alternative<double>(value_); }
+    /// True only for the value `true`.
     bool is_true() const { return std::holds_alternative<bool>(value_) && std::get<bool>(value_); }
     /// Returns the number of elements of an array; 0 for anything else.
     std::size_t size() const;
-    double number(double otherwise) const;
-    /// Returns a whole number from 0 to 2^53, which glTF uses for counts and indices; else `otherwise`.
-    std::size_t index(std::size_t otherwise) const;
+    /// Returns a number; for anything else `default_value`.
+    double number(double default_value) const;
+    /// Returns a whole number from 0 to 2^53, which glTF uses for counts and indices; for anything else
+    /// `default_value`.
+    std::size_t index(std::size_t default_value) const;
     /// Returns the text of a string; empty for anything else.
     const std::string& text() const;
 

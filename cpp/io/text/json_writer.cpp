@@ -10,16 +10,16 @@ JsonWriter& JsonWriter::begin(char open, char close) {
     before_value();
     text_ += open;
     closers_.push_back(close);
-    first_ = true;
+    is_first_ = true;
     return *this;
 }
 
 JsonWriter& JsonWriter::end() {
     const char close = closers_.back();
     closers_.pop_back();
-    if (!first_) new_line();
+    if (!is_first_) new_line();
     text_ += close;
-    first_ = false;
+    is_first_ = false;
     return *this;
 }
 
@@ -27,7 +27,7 @@ JsonWriter& JsonWriter::key(const std::string& name) {
     before_value();
     quote(name);
     text_ += ": ";
-    after_key_ = true;
+    is_after_key_ = true;
     return *this;
 }
 
@@ -79,11 +79,11 @@ JsonWriter& JsonWriter::numbers(std::initializer_list<std::pair<const char*, dou
 }
 
 void JsonWriter::before_value() {
-    if (!after_key_ && !closers_.empty()) {
-        if (!first_) text_ += ',';
+    if (!is_after_key_ && !closers_.empty()) {
+        if (!is_first_) text_ += ',';
         new_line();
     }
-    first_ = after_key_ = false;
+    is_first_ = is_after_key_ = false;
 }
 
 void JsonWriter::new_line() {

@@ -6,13 +6,17 @@
 namespace realcam::io {
 namespace {
 
-constexpr std::size_t kMostQuoted = 60;
-constexpr std::string_view kReplacement = "\xef\xbf\xbd";
+constexpr std::size_t kMaxQuotedBytes = 60;
+constexpr std::string_view kReplacement = "\xef\xbf\xbd";  // U+FFFD in UTF-8
 
-/// Cleans a text, and cuts it at the end of a character after `most` bytes.
-std::string cleaned(std::string_view bytes, std::size_t most) {
+// Limits of one_line, in bytes: longer words and lines are shortened to this number of bytes at each end.
+constexpr std::size_t kMaxWord = 300, kWordEnds = 100, kMaxLine = 2000, kLineEnds = 800;
+
+/// Replaces control characters and invalid bytes (see printable), and truncates at the end of a character after
+/// `max_bytes` bytes.
+std::string sanitized(std::string_view bytes, std::size_t max_bytes) {
     std::string out;
-    while (!bytes.empty() && out.size() < most) {
+    while (!bytes.empty() && out.size() < max_bytes) {
         const std::size_t size = utf8_size(bytes);
         const bool is_control = size == 1 && (static_cast<unsigned char>(bytes[0]) < 0x20 || bytes[0] == 0x7f);
         // U+0080 to U+009F; U+0085 ends a line.
@@ -31,18 +35,19 @@ std::string cleaned(std::string_view bytes, std::size_t most) {
 }  // namespace
 
 std::string printable(std::string_view bytes) {
-    return cleaned(bytes, std::string_view::npos);
+    return sanitized(bytes, std::string_view::npos);
 }
 
 std::string in_quotes(std::string_view bytes) {
-    return '"' + cleaned(bytes, kMostQuoted) + '"';
+    return '"' + sanitized(bytes, kMaxQuotedBytes) + '"';
 }
 
 namespace {
 
-/// Removes the middle of a text that is longer than `longest`, and keeps `kept` characters at each end.
-std::string shortened(const std::string& text, std::size_t longest, std::size_t kept) {
-    if (text.size() <= longest) return text;
+/// Replaces the middle of a text that is longer than `max_length` by the number of bytes left out; `kept`: number of
+/// bytes that remain at each end.
+std::string shortened(const std::string& text, std::size_t max_length, std::size_t kept) {
+    if (text.size() <= max_length) return text;
     return text.substr(0, kept) + "[... " + std::to_string(text.size() - 2 * kept) + " characters ...]" +
            text.substr(text.size() - kept);
 }
@@ -52,7 +57,7 @@ std::string shortened(const std::string& text, std::size_t longest, std::size_t 
 std::string one_line(const std::string& message) {
     std::string line, word;
     const auto end_word = [&] {
-        line += shortened(word, 300, 100);
+        line += shortened(word, kMaxWord, kWordEnds);
         word.clear();
     };
     for (const char c : message) {
@@ -65,11 +70,12 @@ std::string one_line(const std::string& message) {
         }
     }
     end_word();
-    return shortened(line, 2000, 800);
+    return shortened(line, kMaxLine, kLineEnds);
 }
 
 namespace {
 
+/// True if the byte lies between two values, inclusive.
 bool is_between(char c, unsigned low, unsigned high) {
     const auto value = static_cast<unsigned char>(c);
     return value >= low && value <= high;

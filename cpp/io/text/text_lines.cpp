@@ -6,9 +6,9 @@
 namespace realcam::io {
 namespace {
 
-constexpr std::size_t kPiece = 1 << 20;
+constexpr std::size_t kChunk = 1 << 20;  // bytes read at a time
 /// Allows a polygon of tens of millions of corners, but not a file without lines.
-constexpr std::size_t kLongestLine = std::size_t{1} << 28;
+constexpr std::size_t kMaxLineLength = std::size_t{1} << 28;
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 bool is_blank(char c) {
@@ -23,16 +23,17 @@ bool TextLines::read_more() {
         end_ -= begin_;
         begin_ = 0;
     }
-    if (buffer_.size() - end_ < kPiece) buffer_.resize(std::max(2 * buffer_.size(), kPiece + end_));
-    const std::size_t n = file_.read(buffer_.data() + end_, kPiece);
+    if (buffer_.size() - end_ < kChunk) buffer_.resize(std::max(2 * buffer_.size(), kChunk + end_));
+    const std::size_t n = file_.read(buffer_.data() + end_, kChunk);
     checkpoint_.pass(n / 64);
     end_ += n;
     return n > 0;
 }
 
 void TextLines::check_length(std::size_t length) const {
-    if (length <= kLongestLine) return;
-    throw SceneFileError(path_ + ": line " + std::to_string(count_ + 1) + ": is longer than 268435456 bytes");
+    if (length <= kMaxLineLength) return;
+    throw SceneFileError(path_ + ": line " + std::to_string(count_ + 1) + ": is longer than " +
+                         std::to_string(kMaxLineLength) + " bytes");
 }
 
 bool TextLines::next_physical(std::string_view& line) {
@@ -47,24 +48,25 @@ bool TextLines::next_physical(std::string_view& line) {
             if (buffer_[begin_] == '\n') ++begin_;
             after_return_ = false;
         }
-        std::size_t at = begin_ + searched;
+        std::size_t position = begin_ + searched;
         // The characters that end a line, and the null character, are at most '\r'.
-        while (at < end_ && (static_cast<unsigned char>(buffer_[at]) > '\r' ||
-                             (buffer_[at] != '\n' && buffer_[at] != '\r' && buffer_[at] != '\0')))
-            ++at;
-        if (at < end_ && buffer_[at] == '\0')
+        while (position < end_ &&
+               (static_cast<unsigned char>(buffer_[position]) > '\r' ||
+                (buffer_[position] != '\n' && buffer_[position] != '\r' && buffer_[position] != '\0')))
+            ++position;
+        if (position < end_ && buffer_[position] == '\0')
             throw SceneFileError(path_ + ": line " + std::to_string(count_ + 1) +
                                  ": holds a null character; expected text");
-        if (at == end_) {
-            searched = at - begin_;
+        if (position == end_) {
+            searched = position - begin_;
             check_length(searched);
             if (read_more()) continue;
             if (begin_ == end_) return false;
-            at = end_;
+            position = end_;
         }
-        line = std::string_view(buffer_.data() + begin_, at - begin_);
-        after_return_ = at < end_ && buffer_[at] == '\r';
-        begin_ = std::min(at + 1, end_);
+        line = std::string_view(buffer_.data() + begin_, position - begin_);
+        after_return_ = position < end_ && buffer_[position] == '\r';
+        begin_ = std::min(position + 1, end_);
         ++count_;
         return true;
     }

@@ -8,8 +8,8 @@
 
 namespace realcam::io {
 
-/// Lines of a text file, read piece by piece: a file of a gigabyte needs no more memory than its longest line. Lines
-/// end in \n, \r\n or \r; a backslash at the end continues a line in the next one; a byte-order mark is skipped.
+/// Reader of the lines of a text file, in chunks: a file of a gigabyte needs little more memory than its longest line.
+/// Lines end in \n, \r\n or \r; a backslash at the end continues a line in the next one; a byte-order mark is skipped.
 class TextLines {
 public:
     /// Opens the file. Throws FileError.
@@ -22,23 +22,29 @@ public:
     std::size_t number() const { return number_; }
 
 private:
+    /// Reads the next line without joining continued lines. Returns false at the end of the file.
     bool next_physical(std::string_view& line);
+    /// Reads a chunk of the file into the buffer. Returns false at the end of the file.
     bool read_more();
+    /// Throws SceneFileError if a line of this length is too long.
     void check_length(std::size_t length) const;
 
     std::string path_;
     Checkpoint& checkpoint_;
     RegularFile file_;
-    std::string buffer_, joined_;
+    std::string buffer_;  ///< chunk of the file
+    std::string joined_;  ///< a continued line
     std::size_t begin_ = 0, end_ = 0;  // range of the buffer not yet returned
-    std::size_t count_ = 0, number_ = 0;
-    bool started_ = false, after_return_ = false;
+    std::size_t count_ = 0;  // physical lines read so far
+    std::size_t number_ = 0;  // see number()
+    bool started_ = false;  // true after the first chunk has been read
+    bool after_return_ = false;  // true if the last line ended in \r, which a \n may follow
 };
 
-/// Takes a word from the beginning of a line, and the blanks around it; empty at the end of the line.
+/// Removes the first word of a line, with the blanks around it, and returns the word; empty at the end of the line.
 std::string_view take_word(std::string_view& line);
 
-/// Returns the text without blanks at its ends.
+/// Returns a text without the blanks (spaces, tabs) at its ends.
 std::string_view trimmed(std::string_view text);
 
 }  // namespace realcam::io

@@ -9,17 +9,20 @@
 
 namespace realcam::io {
 
-// Parses numbers of a command line. CLI11's own conversion is not suitable: it reads numbers as long double and then
-// rounds again, so that an option could differ from the same number in a shot file, and it takes 010 for 8.
+// Parsers of numbers. number_in and numbers_in are for the command line: CLI11's own conversion reads numbers as long
+// double and then rounds again, so that an option could differ from the same number in a shot file, and it reads 010
+// as 8.
 
 /// Parses a text that is one number, or "inf"; std::nullopt for other texts and for NaN.
 std::optional<double> number_in(const std::string& text);
 
-/// Parses `count` finite numbers with a separator between them; std::nullopt for other texts.
+/// Parses exactly `count` finite numbers with a separator between them, such as 36x24; std::nullopt for other texts.
 std::optional<std::vector<double>> numbers_in(const std::string& text, char separator, std::size_t count);
 
-/// Takes a number from the beginning of a text, also "nan", "inf", ".5" and a "+". Returns std::nullopt, and leaves the
-/// text unchanged, if there is no number. Numbers too large for a double are infinite, and those too small are 0.
+/// Parses a number at the beginning of a text, and removes it from the text. Accepts also "nan", "inf", ".5" and a
+/// leading
+/// "+". Returns std::nullopt, and leaves the text unchanged, if there is no number. Numbers too large for a double
+/// become infinite, and those too small become 0.
 inline std::optional<double> take_number(std::string_view& text) {
     std::string_view rest = text;
     if (rest.starts_with('+') && !rest.substr(1).starts_with('-')) rest.remove_prefix(1);
@@ -43,7 +46,8 @@ inline std::optional<double> take_number(std::string_view& text) {
     return value;
 }
 
-/// Takes a whole number, which ends after its digits. Numbers beyond 64 bits become the largest or the least.
+/// Parses a whole number at the beginning of a text, as take_number does. Numbers beyond 64 bits become the largest or
+/// the least std::int64_t.
 inline std::optional<std::int64_t> take_integer(std::string_view& text) {
     std::string_view rest = text;
     if (rest.starts_with('+') && !rest.substr(1).starts_with('-')) rest.remove_prefix(1);

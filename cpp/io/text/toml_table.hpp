@@ -17,9 +17,10 @@
 
 namespace realcam::io {
 
-/// Throws the error of a kind of file. `line` and `surface` are 1-based; 0 if they do not apply.
+/// Function that throws the error type of a kind of file. `line` and `surface` are 1-based; 0 if they do not apply.
 using RaiseFileError = void (*)(const std::string& message, const std::string& file, int line, int surface);
 
+/// RaiseFileError for lens files.
 [[noreturn]] inline void raise_lens_file_error(const std::string& message, const std::string& file, int line,
                                                int surface) {
     throw LensFileError(message, file, line, surface);
@@ -28,35 +29,41 @@ using RaiseFileError = void (*)(const std::string& message, const std::string& f
 /// Table of a TOML file that knows its position, so that every error names file, line and, in a lens file, surface.
 class TomlTable {
 public:
+    /// `table` must outlive this object. `file`: its name in messages. `surface`: number of the lens surface that the
+    /// table describes; 0: none. `raise`: throws the errors.
     TomlTable(const toml::table& table, std::string file, int surface = 0, RaiseFileError raise = raise_lens_file_error)
         : table_(table), file_(std::move(file)), surface_(surface), raise_(raise) {}
 
+    /// Throws an error at the line of `node` or, if it is null, of the table.
     [[noreturn]] void fail(const std::string& message, const toml::node* node = nullptr) const {
         const toml::node& location = node ? *node : table_;
         raise_(message, file_, static_cast<int>(location.source().begin.line), surface_);
         std::abort();  // raise_ has thrown
     }
 
-    /// Rejects keys that the format does not define: a misspelt one must not be ignored silently.
+    /// Throws an error for a key that is not one of `keys`: a misspelt key must not be ignored.
     void allow(const std::vector<std::string_view>& keys) const {
         for (const auto& [key, node] : table_) {
-            bool known = false;
-            for (std::string_view allowed : keys) known |= key.str() == allowed;
-            if (!known)
+            bool is_known = false;
+            for (std::string_view allowed : keys) is_known |= key.str() == allowed;
+            if (!is_known)
                 fail("unknown key " + in_quotes(key.str()) +
                          did_you_mean(key.str(), std::vector<std::string>(keys.begin(), keys.end())),
                      &node);
         }
     }
 
+    /// Returns the value of a key; null if the key is absent.
     const toml::node* find(std::string_view key) const { return table_.get(key); }
 
+    /// Returns a finite number; std::nullopt if the key is absent.
     std::optional<double> number(std::string_view key) const {
         const toml::node* node = find(key);
         if (!node) return std::nullopt;
         return as_number(*node, shown(key));
     }
 
+    /// Returns the value of a node as a finite number. `what`: noun phrase for it, which begins the error message.
     double as_number(const toml::node& node, const std::string& what) const {
         // value_or returns no value for an integer that no double represents exactly.
         const double value = node.is_integer()  ? static_cast<double>(node.as_integer()->get())
@@ -66,6 +73,7 @@ public:
         return value;
     }
 
+    /// Returns a text; empty if the key is absent.
     std::string text(std::string_view key) const {
         const toml::node* node = find(key);
         if (!node) return {};
@@ -73,7 +81,7 @@ public:
         return *node->value<std::string>();
     }
 
-    /// Returns a text for one line of a terminal, a drawing or a file; control characters are an error.
+    /// Returns a text that must be a single line, without control characters; empty if the key is absent.
     std::string line(std::string_view key) const {
         std::string value = text(key);
         if (printable(value) != value)
@@ -81,7 +89,8 @@ public:
         return value;
     }
 
-    /// Checks the name of a table within this one in the same way.
+    /// Throws an error at `node` if the name of a table within this one is not a single line without control
+    /// characters.
     void check_name(std::string_view key, const toml::node& node) const {
         if (printable(key) != key)
             fail("the name " + in_quotes(key) + " must be one line of text, without control characters", &node);
@@ -123,6 +132,7 @@ public:
         return values;
     }
 
+    /// Returns the table of a key; std::nullopt if the key is absent.
     std::optional<TomlTable> table(std::string_view key) const {
         const toml::node* node = find(key);
         if (!node) return std::nullopt;
@@ -130,9 +140,10 @@ public:
         return TomlTable(*node->as_table(), file_, surface_, raise_);
     }
 
-    /// Wraps a table within this one.
+    /// Returns a table within this one, whose errors name the same file and surface.
     TomlTable within(const toml::table& inner) const { return TomlTable(inner, file_, surface_, raise_); }
 
+    /// The table of toml++.
     const toml::table& raw() const { return table_; }
     const std::string& file() const { return file_; }
 

@@ -70,7 +70,7 @@ def _what_is_wrong(error: Any, commands: dict[str, Any] | None) -> str:
     if option := getattr(error, "option_name", None):
         if said.startswith("No such option"):
             return f"unknown option {option}{_did_you_mean(_plain(option), _options_of(error.ctx))}"
-        return f"{option} {'wants a value' if 'requires' in said else 'takes no value'}"
+        return f"{option} {'requires a value' if 'requires' in said else 'takes no value'}"
     if parameter := getattr(error, "param", None):
         name = max(parameter.opts, key=len) if parameter.param_type_name == "option" else parameter.metavar
         if not said:  # click gives no message for a missing parameter

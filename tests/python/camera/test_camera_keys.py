@@ -329,13 +329,13 @@ def test_an_f_number_of_the_file_is_that_of_all_focal_lengths(folder: Path) -> N
         ('[[key]]\ntime_s = 1\nlens = ""\n', 10, '"lens" is empty'),
         ('f_number = 4.5\n[[key]]\ntime_s = 1\nlens = "mirror-telephoto-500mm"\n', 9, "f/4.5 is faster than lens"),
         ("blades = 7\n[[key]]\ntime_s = 1\nblades = 6\n", 8, '"blades" and "blades" of [[key]] exclude each other'),
-        ("[[key]]\ntime_s = 1\nblades = 6.5\n", 10, '"blades" wants whole numbers'),
+        ("[[key]]\ntime_s = 1\nblades = 6.5\n", 10, '"blades" must be a whole number'),
         ("film_shift_mm = [1, 0]\n[[key]]\ntime_s = 1\nfilm_shift_mm = [0, 0]\n", 8, '"film_shift_mm" of [[key]]'),
         ("[[key]]\ntime_s = 1\nfilm_shift_mm = 3\n", 10, '"film_shift_mm"'),
         ("[[key]]\ntime_s = 1\nfilm_mm = [36, 24]\n", 10, 'unknown key "film_mm"'),
         ("key = 3\n", 8, "expected tables [[key]]"),
         ("[shake]\nrms_degrees = 1\n", 9, 'unknown key "rms_degrees"'),
-        ("[shake]\nseed = 1\n", 8, '[shake] wants a "file", "rms_deg" or "rms_mm"'),
+        ("[shake]\nseed = 1\n", 8, '[shake] needs a "file", "rms_deg" or "rms_mm"'),
     ],
 )  # fmt: skip
 def test_mistakes_are_named_with_file_and_line(folder: Path, text: str, line: int, wanted: str) -> None:

@@ -113,12 +113,12 @@ def test_a_curve_is_read_from_a_table(tmp_path: Path) -> None:
         ("x_deg\n1\n", 1, "the column time_s is missing"),
         ("time_s,x_deg,x_deg\n", 1, "the column x_deg is named twice"),
         ("time_s,x_deg\n0,1\n1\n", 3, "has 1 numbers; the columns are 2"),
-        ("time_s,x_deg\n0,1\n1,one\n", 3, '"one" is no finite number'),
-        ("time_s,x_deg\n0,nan\n", 2, '"nan" is no finite number'),
+        ("time_s,x_deg\n0,1\n1,one\n", 3, '"one" is not a finite number'),
+        ("time_s,x_deg\n0,nan\n", 2, '"nan" is not a finite number'),
         ("time_s,x_deg\n1,0\n1,0\n", 3, "the times must rise"),
         ("time_s,x_deg\n1,100\n", 2, "angles must lie within 90 degrees"),
-        ("", None, "holds no curve"),
-        ("time_s\n", None, "holds no curve"),
+        ("", None, "has no curve"),
+        ("time_s\n", None, "has no curve"),
     ],
 )
 def test_mistakes_in_a_table_are_named(tmp_path: Path, text: str, line: int | None, wanted: str) -> None:

@@ -169,7 +169,7 @@ def test_help_has_one_form(name: str, python: Said, cpp: Said) -> None:
     def paragraphs(page: str) -> list[str]:
         """One for each option, argument and heading; which column texts begin in depends on the names in a group."""
         lines = re.sub(r"\n {4,}", " ", page).replace(" [required]", "").splitlines()
-        return sorted({" ".join(line.split()) for line in lines} - {"Camera:", "Scene:", "Picture:", "Film:", ""})
+        return sorted({" ".join(line.split()) for line in lines} - {"Camera:", "Scene:", "Picture:", "Video:", ""})
 
     assert paragraphs(text) == paragraphs(printed)
 
@@ -248,7 +248,7 @@ def test_bench_says_where_the_benchmarks_are(tmp_path: Path, python: Said, monke
         ("render scene.glb", "--output is required (realcam render --help lists the options)"),
         ("rendr", 'unknown command "rendr" (did you mean "render"'),
         ("lens lst", 'unknown command "lst" (did you mean "list"'),
-        ("render quad.obj -o a.png --spp 4 --noise 0.1", 'noise_codes, seconds and max_spp belong to spp "auto"'),
+        ("render quad.obj -o a.png --spp 4 --noise 0.1", 'noise_codes, seconds and max_spp need spp "auto"'),
         ("render quad.obj -o a.png --noise-codes 0", "noise_codes must be at least 1e-9"),
         ("render quad.obj -o a.png --noise-codes nan", '--noise-codes must be a number; it is "nan"'),
         ("render quad.obj -o a.png --noise 0", "noise must be at least 1e-9"),
@@ -257,7 +257,7 @@ def test_bench_says_where_the_benchmarks_are(tmp_path: Path, python: Said, monke
         ("render quad.obj -o a.png --max-spp 0", "max_spp must lie between 2 and"),
         ("render quad.obj -o a.png --quality best", '--quality must be draft, photo or reference; it is "best"'),
         ("render quad.obj -o a.png --threshold-px 0", "must be above 0"),
-        ("render quad.obj -o a.png --layers all", "layers are written to .exr, and no --output is one"),
+        ("render quad.obj -o a.png --layers all", "layers need an .exr file, and no --output is one"),
         (
             "render quad.obj -o a.exr --layers depth,,normal",
             '--layers: unknown layer ""; expected all, or some of depth, normal',
@@ -316,7 +316,7 @@ def test_without_a_number_of_samples_the_noise_and_the_time_decide(tmp_path: Pat
     def figures(scene: str, *words: object) -> tuple[dict[str, Any], str]:
         return render(tmp_path, *words, scene=scene)
 
-    aim = "realcam: samples are taken until the noise is {}; --noise-codes, --seconds or --spp say otherwise\n"
+    aim = "realcam: samples are taken until the noise is {}; --noise-codes, --seconds or --spp change this\n"
     for scene in ("quad.obj", "shot.toml"):
         image, told = figures(scene)
         assert (image["noise"]["wanted"], image["noise"]["unit"]) == (2, "codes")

@@ -55,5 +55,5 @@ def test_inputs_stay(inputs: Path, tmp_path: Path, writer: str, target: str) -> 
     done = subprocess.run([*PYTHON, *WRITERS[writer], target], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 2
     (line,) = (line for line in done.stderr.splitlines() if "error" in line)
-    assert "is a file that the output is made from" in line
+    assert "is also an input of this command" in line
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before

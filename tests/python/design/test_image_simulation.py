@@ -306,7 +306,7 @@ def test_the_command(command: Command, tmp_path: Path) -> None:
     (tmp_path / "text.png").write_text("no picture")
     for name, words, message in (
         ("none.png", (), "no such file"),
-        ("text.png", (), "is no picture"),
+        ("text.png", (), "is not a picture"),
         ("chart.png", ("--crop", "1,2,3"), '--crop: "1,2,3": expected 4 whole numbers with "," between'),
         ("chart.png", ("--resolution", "4by3"), "--resolution"),
     ):

@@ -158,7 +158,7 @@ def test_apertures(tmp_path):
     assert bar["rectangle_mm"] == (0.5, 9) and bar["offset_mm"] == (2, 0) and bar["angle_deg"] == 45
     # The circle of 12 mm and the rectangle: what both leave open.
     assert one_form(tmp_path, "REX 30; REY 30").clear_semi_diameter_mm == 12
-    with pytest.raises(rc.LensFileError, match=r"surface 2.*an ellipse as an aperture that is turned"):
+    with pytest.raises(rc.LensFileError, match=r"surface 2.*a rotated elliptical aperture"):
         one_form(tmp_path, "ELX 5; ELY 3; ARO 30")
     with pytest.raises(rc.LensFileError, match=r"surface 2.*several apertures"):
         one_form(tmp_path, "ELX 5; ELY 3; REX 4; REY 4")
@@ -183,5 +183,5 @@ def test_a_paraboloid_has_its_focus_in_front_of_it(tmp_path):
 def test_without_sto_the_first_surface_is_the_stop(tmp_path):
     path = tmp_path / "lens.seq"
     path.write_text(HEAD + "S 50 4 600.400\nS -50 40\nSI 0 0\nGO\n")
-    with pytest.warns(UserWarning, match="names no aperture stop"):
+    with pytest.warns(UserWarning, match="specifies no aperture stop"):
         assert rc.Lens.load(path).stop_index == 0

@@ -361,7 +361,7 @@ clear_semi_diameter_mm = 5.0
         (
             "tables",
             "[coating.bare]\nlayers = [{ material = 1.4, thickness_nm = 9 }]",
-            r':17: "bare" is a coating that all',
+            r':17: "bare" is the name of a predefined coating',
         ),
         ("coating", "", r':17: a coating needs "layers"'),
         ("coating", "layer = []", r':18: unknown key "layer" \(did you mean "layers"'),

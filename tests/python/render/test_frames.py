@@ -125,7 +125,7 @@ def test_render_takes_numbered_frames_and_goes_on(folder: Path) -> None:
     (folder / names[1]).unlink()
     before = {name: (folder / name).stat().st_mtime_ns for name in names if (folder / name).exists()}
     done = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, check=True)
-    assert "3 of 4 frames were there already; --again takes them, too" in done.stderr
+    assert "3 of 4 frames exist already; --again takes them again" in done.stderr
     assert {name: (folder / name).stat().st_mtime_ns for name in before} == before
     assert (folder / names[1]).exists()
     subprocess.run([*PROGRAM, *words, "--again", "--quiet"], capture_output=True, check=True)
@@ -164,7 +164,7 @@ def test_a_film_that_was_stopped_goes_on(folder: Path) -> None:
     assert not (folder / "pan.mp4").exists()
     words[words.index("1-400")] = "1-1"
     done = subprocess.run([*PYTHON, *words], capture_output=True, text=True, check=True)
-    assert "1 of 1 frames were there already" in done.stderr
+    assert "1 of 1 frames exist already" in done.stderr
     assert (folder / "pan.mp4").exists()
     # Other frames are not lost.
     assert sorted(path.name for path in (folder / "pan.mp4.frames").iterdir()) == there[1:]
@@ -175,7 +175,7 @@ def test_the_executable_says_what_makes_films(folder: Path) -> None:
     words = [*EXECUTABLE, "render", "pan.toml", "-o", "pan.mp4", "--frames", "1-3"]
     done = subprocess.run(words, capture_output=True, text=True)
     assert done.returncode == 2
-    assert "this program writes pictures; realcam of Python (realcam[video]) makes films" in done.stderr
+    assert "this program writes no videos; the command of the Python package realcam[video] does" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -187,7 +187,7 @@ def test_the_executable_says_what_makes_films(folder: Path) -> None:
         ("render -oa.mp4", "--frames is missing"),
         ("render -onowhere/a.mp4 --frames 1-2", "nowhere"),
         *(
-            (f"{what} --frames={frames}", f'--frames: "{frames}": expected a number, 1-240 or 1-240x2')
+            (f"{what} --frames={frames}", f'--frames: "{frames}": expected a number')
             for what in ("render -oa.png", "job make -oa.job")
             for frames in ("9-1", "a-b", "1-2x0.5", "1-9x0", "-3")
         ),
@@ -285,8 +285,8 @@ def test_only_whole_frames_of_the_same_film_count_as_done(folder: Path, suffix: 
                     "--device", "cpu", "--quiet"], check=True)  # fmt: skip
     before = files[6].stat().st_mtime_ns
     done = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, check=True)
-    assert "1 of 7 frames were there already" in done.stderr
-    assert "6 of 7 frames were there, but damaged or taken with other settings" in done.stderr
+    assert "1 of 7 frames exist already" in done.stderr
+    assert "6 of 7 frames existed, but were damaged or taken with other settings" in done.stderr
     undated = [re.sub(rb"(?s)capDate.{12}.{19}", b"", content) for content in good]
     assert [re.sub(rb"(?s)capDate.{12}.{19}", b"", path.read_bytes()) for path in files] == undated
     assert files[6].stat().st_mtime_ns == before
@@ -294,7 +294,7 @@ def test_only_whole_frames_of_the_same_film_count_as_done(folder: Path, suffix: 
     for more, change in ((["--max-bounces", "3"], ""), ([], "v 9 9 9\n")):
         (folder / "wall.obj").write_text((folder / "wall.obj").read_text() + change)
         done = subprocess.run([*PROGRAM, *words, *more], capture_output=True, text=True, check=True)
-        assert "7 of 7 frames were there, but damaged" in done.stderr
+        assert "7 of 7 frames existed, but were damaged" in done.stderr
 
 
 @pytest.mark.slow
@@ -305,5 +305,5 @@ def test_no_frame_replaces_a_file_that_the_film_is_made_from(folder: Path) -> No
     words = ["render", "lit.toml", "-o", "sky.png", "--frames", "1-3", "--again", "--device", "cpu"]
     done = subprocess.run([*PROGRAM, *words], capture_output=True, text=True)
     assert done.returncode == 2
-    assert '"sky.0002.png" is a file that the output is made from' in done.stderr
+    assert '"sky.0002.png" is also an input of this command' in done.stderr
     assert (folder / "sky.0002.png").read_bytes() == before

@@ -277,8 +277,8 @@ def test_what_is_no_environment(tmp_path: Path, capfd: pytest.CaptureFixture[str
         "nowhere.exr": "no such file",
         "pipe.exr": "pipe",
         "folder.exr": "folder",
-        "text.exr": "is no picture",
-        "empty.hdr": "is no picture",
+        "text.exr": "is not a picture",
+        "empty.hdr": "is not a picture",
         "cut-sky.exr": "broken or incomplete",
         "cut-sky.png": "broken or incomplete",
     }.items():

@@ -285,7 +285,7 @@ def test_films_with_metadata_that_is_no_text(tmp_path: Path) -> None:
     write_exr(tmp_path / "film.exr", SKY, texts={**texts, "realcam:lens": b"\xff\xfe"})
     from realcam.image_file import read_film
 
-    with pytest.raises(rc.ImageFileError, match=r'film.exr: its metadata "realcam:lens" is no valid UTF-8'):
+    with pytest.raises(rc.ImageFileError, match=r'film.exr: its metadata "realcam:lens" is not valid UTF-8'):
         read_film(tmp_path / "film.exr")
 
 

@@ -278,7 +278,7 @@ def test_the_command_takes_a_film_to_raw(tmp_path: Path, monkeypatch: pytest.Mon
         (["film.exr", "-o", "x.bmp"], ".dng, .npy (raw) or .png"),
         (["film.exr", "-o", "x.dng", "--sensor", "idael"], 'unknown sensor "idael"'),
         (["film.exr", "-o", "x.dng", "--sensor", "sony-imx174-mono"], "the lowest ISO of this sensor is"),
-        (["a.png", "-o", "x.dng"], "holds no exposure"),
+        (["a.png", "-o", "x.dng"], "has no exposure"),
         (["film.exr", "-o", "x.dng", "-o", "x.png", "--tone", "magic"], '"magic" is unknown; expected linear, film'),
         (["film.exr", "-o", "film.exr"], "is the film itself"),
     ):

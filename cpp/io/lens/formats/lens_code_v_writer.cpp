@@ -1,3 +1,5 @@
+// Writer of CODE V's sequence files (.seq).
+
 #include <cmath>
 
 #include "../../text/printable.hpp"
@@ -9,7 +11,7 @@ namespace realcam::io {
 namespace {
 
 constexpr int kXyDegree = 10;  // highest degree of SPS XYP
-constexpr std::size_t kAnamorphicTerms = 4;
+constexpr std::size_t kAnamorphicTerms = 4;  // even terms of AAS, from r^4 to r^10
 
 class CodeVWriter : PrescriptionWriter {
 public:
@@ -22,7 +24,7 @@ public:
         result_.text =
             "RDM N;LEN\nTITLE " + quoted(title()) + "\nEPD " + exact_number(entrance_pupil_diameter(".seq")) +
             "\nDIM M\nWL " + exact_number(lens_.wavelength_nm) + "\nREF 1\nWTW 1\nXRI 0.0 0.0\nYRI 0.0 " +
-            exact_number(corner()) + "\nWTF 1.0 1.0\n" + private_glasses() + "SO 0.0 " +
+            exact_number(film_corner()) + "\nWTF 1.0 1.0\n" + private_glasses() + "SO 0.0 " +
             (std::isfinite(object_distance()) ? exact_number(object_distance()) : "0.1e14") + '\n' + surfaces + "SI " +
             exact_number(image_curvature()) + " 0.0\n" + placement_commands(lens_.film_placement) + zoom() + "GO\n";
         return std::move(result_);
@@ -41,6 +43,7 @@ private:
     void line(const std::string& word) { commands_ += "  " + word + '\n'; }
     void line(const std::string& word, double value) { commands_ += command(word, value); }
 
+    /// Returns the commands of a surface.
     std::string surface(std::size_t i) {
         const Surface& s = lens_.surfaces[i];
         commands_.clear();
@@ -49,7 +52,7 @@ private:
         write_aperture(i);
         SurfacePlacement placement = s.placement;
         if (constant != 0) {
-            // CODE V's polynomials have no constant term: only this surface is moved.
+            // CODE V's polynomials have no constant term; the surface alone is displaced by it instead.
             placement = SurfacePlacement::of(placement.frame() * along_axis(constant));
             placement.returns = s.placement.returns || s.placement.is_in_place();
         }
@@ -67,7 +70,7 @@ private:
         const auto& [decentre, tilt, returns] = placement;
         if (placement.is_in_place()) return {};
         std::string text;
-        // Alpha and beta are positive clockwise.
+        // CODE V's alpha and beta have the opposite sign.
         for (const auto& [word, value] : {std::pair{"XDE", decentre.x},
                                           {"YDE", decentre.y},
                                           {"ZDE", decentre.z},
@@ -78,15 +81,16 @@ private:
         return returns ? text + "  DAR\n" : text;
     }
 
-    /// Returns the constant term of the sag, by which the surface has to be moved along its axis.
+    /// Adds the commands of a surface's form. Returns the constant term of the sag in mm, by which the surface must be
+    /// displaced along its axis.
     double write_form(std::size_t i) {
         const Surface& s = lens_.surfaces[i];
         const SurfaceForm& form = s.form;
         const bool has_radial = !form.radial.empty() || form.forbes, has_xy = !form.xy.empty() || form.zernike;
         if (const std::string terms = beyond_polynomials(form); !terms.empty())
-            leave_out(i, "has " + terms + ", which realcam does not write to .seq files");
+            warn(i, "has " + terms + ", which realcam does not write to .seq files");
         if (form.base != BaseForm::conic) {
-            if (has_radial || has_xy) leave_out(i, "has terms beside its toroid or biconic, which CODE V's types lack");
+            if (has_radial || has_xy) warn(i, "has terms beside its toroid or biconic, which CODE V's types lack");
             const bool is_toroid = form.base == BaseForm::toroid;
             line(is_toroid ? "YTO" : "AAS");
             line("CUX", form.curvature_x);
@@ -107,7 +111,7 @@ private:
         return 0;
     }
 
-    /// `suffix`: of the terms' names in an anamorphic asphere.
+    /// Adds the even terms. `suffix`: of their keywords, "R" in an anamorphic asphere, otherwise empty.
     void write_even(std::size_t i, const std::string& suffix) {
         const std::vector<double>& terms = lens_.surfaces[i].aspheric;
         for (std::size_t k = 0; k < terms.size(); ++k) {
@@ -115,13 +119,14 @@ private:
             if (suffix.empty() || k < kAnamorphicTerms)
                 line("ABCDEFGH"[k] + suffix, terms[k]);
             else
-                leave_out(i, "has even terms of more than r^10, which CODE V's anamorphic asphere lacks");
+                warn(i, "has even terms of more than r^10, which CODE V's anamorphic asphere lacks");
         }
     }
 
+    /// Adds a polynomial in x and y (SPS XYP). Returns its constant term in mm.
     double write_polynomial(std::size_t i) {
         const Surface& s = lens_.surfaces[i];
-        if (has_odd_terms(s)) leave_out(i, "has odd terms of r beside those of x and y, which CODE V's types lack");
+        if (has_odd_terms(s)) warn(i, "has odd terms of r beside those of x and y, which CODE V's types lack");
         line("SPS XYP");
         line("SCO K", s.conic);
         double constant = 0;
@@ -135,11 +140,11 @@ private:
             else
                 line("SCO C" + std::to_string(xy_number(degree, y) + 1), value);
         }
-        if (is_too_high)
-            leave_out(i, "has terms of x and y of more than the power 10, which CODE V's polynomial lacks");
+        if (is_too_high) warn(i, "has terms of x and y of more than the power 10, which CODE V's polynomial lacks");
         return constant;
     }
 
+    /// Adds the commands of a surface's apertures. Labels distinguish them.
     void write_aperture(std::size_t i) {
         const Surface& s = lens_.surfaces[i];
         const ApertureShape& shape = s.aperture_shape;
@@ -147,45 +152,46 @@ private:
             line(shape.is_plain() ? "CIR" : "CIR L'RIM'", s.clear_semi_diameter);
         if (s.inner_semi_diameter > 0) line("CIR OBS", s.inner_semi_diameter);
         const auto add = [&](ApertureOutline kind, const std::string& obscures, const std::string& label,
-                             const Obscuration& piece) {
+                             const Obscuration& obscuration) {
             const std::string word = kind == ApertureOutline::rectangle ? "RE" : "EL";
             if (kind == ApertureOutline::circle) {
-                line("CIR" + label, piece.half.x);
+                line("CIR" + label, obscuration.half.x);
             } else {
-                line(word + 'X' + obscures + label, piece.half.x);
-                line(word + 'Y' + obscures + label, piece.half.y);
+                line(word + 'X' + obscures + label, obscuration.half.x);
+                line(word + 'Y' + obscures + label, obscuration.half.y);
             }
-            if (piece.offset.x != 0) line("ADX" + label, piece.offset.x);
-            if (piece.offset.y != 0) line("ADY" + label, piece.offset.y);
-            if (piece.angle_deg != 0) line("ARO" + label, piece.angle_deg);
+            if (obscuration.offset.x != 0) line("ADX" + label, obscuration.offset.x);
+            if (obscuration.offset.y != 0) line("ADY" + label, obscuration.offset.y);
+            if (obscuration.angle_deg != 0) line("ARO" + label, obscuration.angle_deg);
         };
         if (shape.kind == ApertureOutline::polygon)
-            leave_out(i, "has a polygonal aperture, which a .seq file has no words for");
+            warn(i, "has a polygonal aperture, which a .seq file cannot express");
         else if (shape.half.x > 0)
             add(shape.kind, "", " L'OPEN'", {false, shape.half, shape.offset, 0});
         int number = 0;
-        for (const Obscuration& piece : shape.obscurations)
-            add(piece.is_rectangle ? ApertureOutline::rectangle : ApertureOutline::ellipse, " OBS",
-                " L'OBS" + std::to_string(++number) + '\'', piece);
+        for (const Obscuration& obscuration : shape.obscurations)
+            add(obscuration.is_rectangle ? ApertureOutline::rectangle : ApertureOutline::ellipse, " OBS",
+                " L'OBS" + std::to_string(++number) + '\'', obscuration);
     }
 
+    /// Returns the name of a glass in the file; a glass that is in no catalogue becomes a private glass.
     std::string glass(const Glass& glass) {
         if (const auto known = catalogue_name_of(glass))
             return bare_glass_name(known->name) + '_' + (known->maker == "misc" ? "SPECIAL" : upper_case(known->maker));
         std::size_t i = 0;
-        while (i < private_.size() && !(private_[i] == glass)) ++i;
-        if (i == private_.size()) private_.push_back(glass);
+        while (i < private_glasses_.size() && !(private_glasses_[i] == glass)) ++i;
+        if (i == private_glasses_.size()) private_glasses_.push_back(glass);
         return private_name(i);
     }
     static std::string private_name(std::size_t i) { return "'GLASS" + std::to_string(i + 1) + '\''; }
 
-    /// Returns glasses that are in no catalogue, by their indices at spectral lines and at the lens's own wavelength.
+    /// Returns the commands of the private glasses: their indices at spectral lines and at the design wavelength.
     std::string private_glasses() const {
-        if (private_.empty()) return {};
+        if (private_glasses_.empty()) return {};
         std::string wavelengths = "PRV\n  PWL", text;
-        for (std::size_t i = 0; i < private_.size(); ++i) {
+        for (std::size_t i = 0; i < private_glasses_.size(); ++i) {
             text += "\n  " + private_name(i);
-            for (const auto& [nm, index] : indices_at_lines(private_[i], lens_.wavelength_nm)) {
+            for (const auto& [nm, index] : indices_at_lines(private_glasses_[i], lens_.wavelength_nm)) {
                 if (i == 0) wavelengths += ' ' + exact_number(nm);
                 text += ' ' + exact_number(index);
             }
@@ -197,17 +203,18 @@ private:
         const ZoomRange& zoom = lens_.zoom;
         if (zoom.positions.empty()) return {};
         if (!lens_.is_rotational()) {
-            result_.warnings.push_back("zoom positions, because the lens is not centred");
+            result_.warnings.push_back("zoom positions, because the lens has no rotational symmetry");
             return {};
         }
         if (zoom.current != 0)
-            result_.warnings.push_back("the position of the zoom ring: a .seq file is read in its first position");
+            result_.warnings.push_back("the current zoom position: CODE V opens a .seq file in its first position");
         std::string text = "ZOO " + std::to_string(zoom.positions.size()) + "\nZOO TIT";
         for (const ZoomPosition& position : zoom.positions) text += ' ' + quoted(position.name);
-        for (const auto& [surface, values] : zoom_rows()) {
-            const bool is_object = surface == ZoomRow::kObject;
-            text += surface == ZoomRow::kEntrancePupil ? "\nZOO EPD"
-                                                       : "\nZOO THI S" + (is_object ? "O" : std::to_string(surface));
+        for (const auto& [surface, values] : zoomed_quantities()) {
+            const bool is_object = surface == ZoomedQuantity::kObject;
+            text += surface == ZoomedQuantity::kEntrancePupil
+                        ? "\nZOO EPD"
+                        : "\nZOO THI S" + (is_object ? "O" : std::to_string(surface));
             for (const double value : values)
                 text += ' ' + exact_number(is_object && !std::isfinite(value) ? 1e13 : value);
         }
@@ -215,7 +222,7 @@ private:
     }
 
     std::string commands_;  ///< commands that follow the line of the current surface
-    std::vector<Glass> private_;
+    std::vector<Glass> private_glasses_;  ///< glasses that are in no catalogue
 };
 
 }  // namespace

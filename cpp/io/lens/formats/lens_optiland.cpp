@@ -1,5 +1,6 @@
-// Reads Optiland's JSON (save_optiland_file): surface_group.surfaces, each with geometry, the material behind it,
-// thickness and aperture; the first is the object, the last the image.
+// Reader of Optiland's JSON files (save_optiland_file). The elements of surface_group.surfaces have geometry, material
+// behind the surface, thickness and aperture; the first one is the object, and the last one is the image. Lengths in
+// mm.
 
 #include <cmath>
 #include <filesystem>
@@ -15,13 +16,14 @@
 namespace realcam::io {
 namespace {
 
+/// Converts the file's objects one after the other; placements are set when all frames are known.
 class OptilandReader : PrescriptionJson {
 public:
     using PrescriptionJson::PrescriptionJson;
 
     Prescription read() {
         const Json& surfaces = root_["surface_group"]["surfaces"];
-        check_count(surfaces.size(), "is no lens of Optiland: surface_group.surfaces");
+        check_count(surfaces.size(), "surface_group.surfaces of Optiland");
         p_.title = root_["name"].text();
         read_object(surfaces[std::size_t{0}], number(z_of(surfaces[1]), "z of the first surface"));
         for (std::size_t i = 1; i + 1 < surfaces.size(); ++i) read_surface(surfaces[i], surfaces[i + 1]);
@@ -34,14 +36,16 @@ public:
         read_aperture(root_["aperture"]);
         read_fields(root_["fields"]);
         read_wavelengths(root_["wavelengths"]["wavelengths"]);
-        if (root_["pickups"].size() > 0) remark("the values in the file are taken for those of its pickups");
-        if (root_["solves"]["solves"].size() > 0) remark("the values in the file are taken for those of its solves");
+        if (root_["pickups"].size() > 0) remark("the values in the file are used for its pickups");
+        if (root_["solves"]["solves"].size() > 0) remark("the values in the file are used for its solves");
         return std::move(p_);
     }
 
 private:
+    /// Position of a surface along the z axis, mm.
     static const Json& z_of(const Json& surface) { return surface["geometry"]["cs"]["z"]; }
 
+    // Return curvatures in 1/mm; 0 for an infinite or missing radius. `name`: noun phrase for messages.
     double curvature_of_radius(const Json& radius, const char* name) const {
         return is_infinite(radius) ? 0 : curvature_of(number(radius, name));
     }
@@ -53,19 +57,20 @@ private:
     /// about x first, then y, then z.
     Affine<double> frame_of(const Json& surface) {
         const Json& cs = surface["geometry"]["cs"];
-        if (!cs["reference_cs"].is_null()) foreign("a system of coordinates within another");
+        if (!cs["reference_cs"].is_null()) unsupported("a coordinate system within another");
         const auto value = [&](const char* key) { return number_or(cs[key], key, 0); };
         const auto degrees = [&](const char* key) { return 180 / std::numbers::pi * value(key); };
         return SurfacePlacement{{value("x"), value("y"), value("z")}, {}, false}.frame() *
                rotation(0, 0, degrees("rz")) * rotation(0, degrees("ry"), 0) * rotation(degrees("rx"), 0, 0);
     }
 
+    /// Sets the transforms of all rows from the frames of their surfaces.
     void set_placements() {
         // If all surfaces face along the z axis, each is decentred from its position on that axis. Otherwise the axis
         // goes from each surface to the next.
-        constexpr double kSteepest = 0.5;  // cosine of 60 degrees
-        if (!std::ranges::all_of(frames_, [](const Affine<double>& frame) { return frame.z.z > kSteepest; }))
-            return set_placements_one_by_one();
+        constexpr double kMinCosine = 0.5;  // of the angle to the z axis: 60 degrees
+        if (!std::ranges::all_of(frames_, [](const Affine<double>& frame) { return frame.z.z > kMinCosine; }))
+            return set_placements_in_sequence();
         const auto without_z = [](Affine<double> frame) {
             frame.origin.z = 0;
             return frame;
@@ -78,35 +83,40 @@ private:
         p_.image_placement = SurfacePlacement::of(without_z(frames_.back()));
     }
 
-    void set_placements_one_by_one() {
-        Affine<double> here = along_axis(frames_.front().origin.z);
+    /// Sets the transforms and thicknesses so that the axis leads from each vertex to the next.
+    void set_placements_in_sequence() {
+        Affine<double> axis = along_axis(frames_.front().origin.z);
         for (std::size_t i = 0; i < p_.surfaces.size(); ++i) {
-            p_.surfaces[i].before = inverse_motion(here) * frames_[i];
+            p_.surfaces[i].before = inverse_motion(axis) * frames_[i];
             const Vec3d offset = frames_[i + 1].origin - frames_[i].origin;
             const double side = dot(offset, frames_[i].z) < 0 ? -1 : 1;
             p_.surfaces[i].thickness = side * std::sqrt(dot(offset, offset));
-            here = frames_[i] * along_axis(p_.surfaces[i].thickness);
+            axis = frames_[i] * along_axis(p_.surfaces[i].thickness);
         }
         // An auxiliary plane before the film, which blocks nothing, directs the axis so that the film is perpendicular
         // to it.
         PrescriptionSurface& last = p_.surfaces.back();
         PrescriptionSurface plane;
         plane.number = surface_;
-        plane.blocks = true;
+        plane.has_aperture = true;
         plane.thickness = 0.5 * std::fabs(last.thickness);
         last.thickness *= 0.5;
-        plane.clear_semi_diameter = 100 * (100 + plane.thickness);
+        constexpr double kUnlimited = 100;  // times the distance to the film, and 100 mm
+        plane.clear_semi_diameter = kUnlimited * (100 + plane.thickness);
         plane.material = last.material;
         plane.before = inverse_motion(frames_[frames_.size() - 2] * along_axis(last.thickness)) * frames_.back() *
                        along_axis(-plane.thickness);
         p_.surfaces.push_back(plane);
     }
 
-    void read_object(const Json& object, double first) {
+    /// Sets the object distance. `first_surface_z`: z of the first surface.
+    void read_object(const Json& object, double first_surface_z) {
         if (!is_infinite(z_of(object)))
-            set_object(first - number(z_of(object), "z of the object"), curvature_of_geometry(object["geometry"]), 0);
+            set_object(first_surface_z - number(z_of(object), "z of the object"),
+                       curvature_of_geometry(object["geometry"]), 0);
     }
 
+    /// Adds the row of a surface. `next`: the surface behind it.
     void read_surface(const Json& surface, const Json& next) {
         PrescriptionSurface row;
         row.number = ++surface_;
@@ -115,20 +125,21 @@ private:
         row.thickness = number(z_of(next), "z of the surface") - number(z_of(surface), "z of the surface");
         // The thickness stated in the file is preferred, because the difference of two positions has lost digits.
         if (surface["thickness"].is_number()) {
-            const double stated = number(surface["thickness"], "the thickness");
-            if (std::fabs(stated - row.thickness) <= 1e-9 * (1 + std::fabs(stated))) row.thickness = stated;
+            const double file_thickness = number(surface["thickness"], "the thickness");
+            if (std::fabs(file_thickness - row.thickness) <= 1e-9 * (1 + std::fabs(file_thickness)))
+                row.thickness = file_thickness;
         }
         read_geometry(surface["geometry"], row);
         const Json& interaction = surface["interaction_model"];
         const std::string& type = interaction["type"].text();
         row.is_mirror = interaction["is_reflective"].is_true() || surface["is_reflective"].is_true();
         if (!type.empty() && type != "RefractiveReflectiveModel")
-            foreign("a surface of the interaction model " + short_name(type));
+            unsupported("a surface of the interaction model " + printable_name(type));
         if (!interaction["coating"].is_null())
             remark("the coating of surface " + std::to_string(surface_) + " is left out");
         if (!row.is_mirror) row.material = material_of(surface["material_post"]);
         if (const Json& aperture = surface["aperture"]; !aperture.is_null()) {
-            row.blocks = true;
+            row.has_aperture = true;
             read_outline(aperture, row, 0);
             limit_to_outline(row);
             row.is_open_outside = row.inner_semi_diameter > 0 && row.clear_semi_diameter == 0;
@@ -136,6 +147,7 @@ private:
         p_.surfaces.push_back(std::move(row));
     }
 
+    /// Sets the shape of a row by the type of its geometry.
     void read_geometry(const Json& geometry, PrescriptionSurface& row) {
         const std::string& type = geometry["type"].text();
         const Json& coefficients = geometry["coefficients"];
@@ -160,17 +172,18 @@ private:
         } else if (type == "ZernikePolynomialGeometry") {
             const std::string& order = geometry["zernike_type"].text();
             if (order != "noll" && order != "fringe")
-                return foreign("Zernike terms of the order " + in_quotes(short_name(order, 20)));
+                return unsupported("Zernike terms of the order " + in_quotes(printable_name(order, 20)));
             set_zernike(row, order == "noll" ? ZernikeOrder::noll : ZernikeOrder::fringe,
                         number(geometry["norm_radius"], "the radius of the Zernike terms"),
                         numbers(coefficients, "a Zernike coefficient", 300));
         } else if (type == "EvenAsphere" || type == "OddAsphere") {
             add_terms(coefficients, type == "EvenAsphere" ? 2 : 1, "an aspheric coefficient", row);
         } else if (type != "StandardGeometry" && type != "Plane") {
-            foreign("a surface of type " + short_name(type));
+            unsupported("a surface of type " + printable_name(type));
         }
     }
 
+    /// Sets a Forbes surface with its departure from the best-fit sphere.
     void read_forbes(const Json& config, PrescriptionSurface& row) const {
         row.curvature = curvature_of_geometry(config);
         row.conic = number_or(config["conic"], "the conic", 0);
@@ -185,6 +198,7 @@ private:
         row.form.forbes = forbes;
     }
 
+    /// Returns the medium behind a surface.
     Glass material_of(const Json& material) {
         const std::string& type = material["type"].text();
         const auto value = [&](const char* key, const char* what) {
@@ -192,7 +206,7 @@ private:
             return number(member.size() > 0 ? member[std::size_t{0}] : member, what);
         };
         if (number_or(material["absorp"], "the absorption", 0) != 0) remark("absorption in the glass is left out");
-        if (type == "AbbeMaterialE") foreign("a glass by its Abbe number at the e line");
+        if (type == "AbbeMaterialE") unsupported("a glass specified by its Abbe number at the e line");
         try {
             if (type == "IdealMaterial") return glass_of_pair(value("index", "the index"), 0);
             if (type == "AbbeMaterial" || type == "AbbeMaterialE")
@@ -205,8 +219,8 @@ private:
         fail("its material is of the type " + in_quotes(type) + "; expected IdealMaterial, AbbeMaterial or Material");
     }
 
-    /// Finds a glass. Its file is in the folder of its maker, or in that of another substance. Optiland looks for a
-    /// name in all of its folders, and stores the folder where it found it.
+    /// Returns the glass of a name. Optiland searches a name in all folders of its data base, and stores the file that
+    /// it found, whose folder is named after the glass's maker or a substance.
     Glass catalogue_material(const Json& material) {
         const std::string &name = material["name"].text(), &file = material["filename"].text();
         std::string path = file, maker = material["reference"].text();
@@ -226,7 +240,7 @@ private:
             const std::optional<Glass> other = glasses_.in_catalogue(name, {});
             if (!other) throw;
             remark("the catalogue of " + in_quotes(maker) + " has no glass " + in_quotes(name) +
-                   ": another maker's is taken");
+                   ": that of another maker is used");
             return *other;
         }
     }
@@ -236,7 +250,7 @@ private:
     Glass data_material(const Json& material) const {
         const Json& dispersion = material["definition"]["dispersion"];
         const std::string& formula = dispersion["formula"].text();
-        const std::string label = short_name(material["name"].text(), 100);
+        const std::string label = printable_name(material["name"].text(), 100);
         const std::vector<double> c = numbers(dispersion["coefficients"], "a coefficient");
         const auto labelled = [&](Glass glass) {
             glass.label = label;
@@ -256,7 +270,7 @@ private:
             return labelled(Glass::sellmeier(terms));
         }
         if (formula != "formula 5" || c.size() % 2 != 1)
-            throw InputError("its dispersion is " + in_quotes(short_name(formula)) +
+            throw InputError("its dispersion is " + in_quotes(printable_name(formula)) +
                              "; expected a table, formula 2 or formula 5");
         std::vector<double> cauchy{c[0]};
         for (std::size_t i = 1; i < c.size(); i += 2) {
@@ -269,7 +283,7 @@ private:
         return labelled(Glass::cauchy(cauchy));
     }
 
-    /// Reads an aperture: a shape, an intersection of two, or a difference of two.
+    /// Reads an aperture: a shape, or the intersection or difference of two apertures. `depth`: of the nesting.
     void read_outline(const Json& aperture, PrescriptionSurface& row, int depth) {
         const std::string& type = aperture["type"].text();
         const auto value = [&](const char* key) { return number(aperture[key], key); };
@@ -285,8 +299,8 @@ private:
             read_outline(aperture["a"], row, depth + 1);
             read_obscuration(aperture["b"], shape);
         } else if (has_shape) {
-            foreign("several apertures that are no circles");
-        } else if (const std::optional<Obscuration> piece = piece_of(aperture)) {
+            unsupported("several apertures that are not circles");
+        } else if (const std::optional<Obscuration> piece = axis_aligned_obscuration(aperture)) {
             set_outline(shape, !piece->is_rectangle && piece->half.x == piece->half.y, piece->is_rectangle, piece->half,
                         piece->offset);
         } else if (type == "OffsetRadialAperture" && value("r_min") == 0) {
@@ -295,20 +309,22 @@ private:
             shape.kind = ApertureOutline::polygon;
             shape.corners = corners_of(aperture);
         } else {
-            foreign("an aperture that is no circle (" + short_name(type) + ")");
+            unsupported("an aperture that is not a circle (" + printable_name(type) + ")");
         }
     }
 
+    /// Adds the shape that is subtracted from an aperture.
     void read_obscuration(const Json& aperture, ApertureShape& shape) {
         const std::string& type = aperture["type"].text();
-        std::optional<Obscuration> piece = piece_of(aperture);
+        std::optional<Obscuration> piece = axis_aligned_obscuration(aperture);
         if (type == "PolygonAperture") piece = rectangle_of(corners_of(aperture));
-        if (!piece) return foreign("an obscuration that is no ellipse or rectangle (" + short_name(type) + ")");
+        if (!piece)
+            return unsupported("an obscuration that is not an ellipse or rectangle (" + printable_name(type) + ")");
         shape.obscurations.push_back(*piece);
     }
 
     /// Returns an ellipse or a rectangle along the axes; std::nullopt for other types.
-    std::optional<Obscuration> piece_of(const Json& aperture) const {
+    std::optional<Obscuration> axis_aligned_obscuration(const Json& aperture) const {
         const std::string& type = aperture["type"].text();
         const auto value = [&](const char* key) { return number(aperture[key], key); };
         if (type == "EllipticalAperture")
@@ -330,21 +346,22 @@ private:
     /// Returns the rectangle with these corners; std::nullopt if they are not those of a rectangle.
     static std::optional<Obscuration> rectangle_of(const std::vector<Vec2d>& corners) {
         if (corners.size() != 4) return std::nullopt;
-        const auto between = [&](std::size_t a, std::size_t b) {
+        const auto edge = [&](std::size_t a, std::size_t b) {
             return Vec2d{corners[b].x - corners[a].x, corners[b].y - corners[a].y};
         };
-        const Vec2d one = between(1, 0), other = between(3, 0), same = between(2, 3);
-        const double length = hypotenuse(one.x, one.y), width = hypotenuse(other.x, other.y);
+        const Vec2d first_edge = edge(1, 0), other = edge(3, 0), opposite_edge = edge(2, 3);
+        const double length = hypotenuse(first_edge.x, first_edge.y), width = hypotenuse(other.x, other.y);
         const double rounding = 1e-9 * (length + width);
-        if (!(std::fabs(one.x * other.x + one.y * other.y) <= rounding * (length + width)) ||
-            !(std::fabs(one.x - same.x) + std::fabs(one.y - same.y) <= rounding))
+        if (!(std::fabs(first_edge.x * other.x + first_edge.y * other.y) <= rounding * (length + width)) ||
+            !(std::fabs(first_edge.x - opposite_edge.x) + std::fabs(first_edge.y - opposite_edge.y) <= rounding))
             return std::nullopt;
         return Obscuration{true,
                            {0.5 * length, 0.5 * width},
                            {0.5 * (corners[0].x + corners[2].x), 0.5 * (corners[0].y + corners[2].y)},
-                           std::atan2(one.y, one.x) * 180 / std::numbers::pi};
+                           std::atan2(first_edge.y, first_edge.x) * 180 / std::numbers::pi};
     }
 
+    /// Sets the aperture of the lens.
     void read_aperture(const Json& aperture) {
         static const std::map<std::string, ApertureKind> kinds{{"EPD", ApertureKind::entrance_pupil_diameter},
                                                                {"imageFNO", ApertureKind::f_number},
@@ -353,7 +370,7 @@ private:
                                                                {"float_by_stop_size", ApertureKind::stop_size}};
         const std::string& type = aperture["type"].text();
         const auto found = kinds.find(type);
-        if (found == kinds.end()) fail("the aperture is of the type " + in_quotes(type) + ", which is not known");
+        if (found == kinds.end()) fail("the aperture is of the type " + in_quotes(type) + ", which is unknown");
         p_.aperture_kind = found->second;
         p_.aperture = number(aperture["value"], "the value of the aperture");
         if (found->second == ApertureKind::stop_size) p_.aperture *= 0.5;  // Optiland has the diameter
@@ -362,31 +379,31 @@ private:
     void read_fields(const Json& fields) {
         std::string type = fields["field_definition"]["field_type"].text();
         if (type.empty()) type = fields["field_type"].text();
-        const auto has = [&](const char* part) { return type.find(part) != type.npos; };
+        const auto type_contains = [&](const char* part) { return type.find(part) != type.npos; };
         if (type == "AngleField" || type == "angle")
             p_.field_kind = FieldKind::angle_deg;
         else if (type == "ObjectHeightField" || type == "object_height")
             p_.field_kind = FieldKind::object_height;
-        else if (has("ImageHeight") || has("image_height"))
+        else if (type_contains("ImageHeight") || type_contains("image_height"))
             p_.field_kind = FieldKind::image_height;
         else
-            return remark("its fields are of a kind that is not known");
+            return remark("its fields are of an unknown kind, and ignored");
         const Json& list = fields["fields"];
-        for (std::size_t i = 0; i < list.size() && i < kMostFileFields; ++i)
+        for (std::size_t i = 0; i < list.size() && i < kMaxFileFields; ++i)
             add_field(list[i], 1, {"vx", "vx", "vy", "vy"});
     }
 
     void read_wavelengths(const Json& list) {
         std::vector<double> wavelengths_nm;
-        std::size_t main = 0;
+        std::size_t primary = 0;
         for (std::size_t i = 0; i < list.size(); ++i) {
             const std::string& unit = list[i]["unit"].text();
             const double scale = unit == "nm" ? 1 : unit == "um" || unit.empty() ? 1000 : unit == "mm" ? 1e6 : 0;
             if (scale == 0) fail("the wavelength's unit is " + in_quotes(unit) + "; expected nm or um");
             wavelengths_nm.push_back(scale * number(list[i]["value"], "the wavelength"));
-            if (list[i]["is_primary"].is_true()) main = i;
+            if (list[i]["is_primary"].is_true()) primary = i;
         }
-        set_wavelengths(std::move(wavelengths_nm), main);
+        set_wavelengths(std::move(wavelengths_nm), primary);
     }
 
     std::vector<Affine<double>> frames_;  ///< frames of the surfaces and of the image, in a common frame

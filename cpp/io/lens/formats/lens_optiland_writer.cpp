@@ -1,4 +1,5 @@
-// Writes Optiland's JSON. Each surface has its position in the lens frame, and its angles about that frame's axes.
+// Writer of Optiland's JSON files. Each surface has its position in the lens frame, and its angles about that frame's
+// axes.
 
 #include <cmath>
 #include <set>
@@ -19,12 +20,12 @@ public:
 
     LensText write() {
         if (!lens_.zoom.positions.empty())
-            result_.warnings.emplace_back("zoom positions, which an Optiland file has no word for");
+            result_.warnings.emplace_back("zoom positions, which an Optiland file cannot express");
         json_.begin_object().number("version", 1).text("name", title());
         json_.begin_object("aperture").text("type", "float_by_stop_size");
         json_.number("value", 2 * lens_.stop_semi_diameter).end();
         json_.begin_object("fields").begin_array("fields");
-        for (const double height : {0.0, corner()})
+        for (const double height : {0.0, film_corner()})
             json_.begin_object().numbers({{"x", 0}, {"y", height}, {"vx", 0}, {"vy", 0}, {"weight", 1}}).end();
         json_.end().truth("telecentric", false).begin_object("field_definition");
         json_.text("field_type", "ParaxialImageHeightField").end().end();
@@ -39,6 +40,7 @@ public:
     }
 
 private:
+    /// Writes object, surfaces and image.
     void write_surfaces() {
         json_.begin_object("surface_group").begin_array("surfaces");
         json_.begin_object().text("type", "ObjectSurface");
@@ -65,6 +67,7 @@ private:
         json_.end().end();
     }
 
+    /// Ends a surface with its interaction model.
     void write_interaction(bool is_mirror) {
         json_.text("comment", "").begin_object("interaction_model");
         json_.text("type", "RefractiveReflectiveModel").truth("is_reflective", is_mirror);
@@ -76,64 +79,67 @@ private:
         json_.begin_object("geometry").text("type", type).begin_object("cs");
         json_.number("x", frame.origin.x).number("y", frame.origin.y).key("z").number_or_infinity(frame.origin.z);
         const double across = hypotenuse(frame.x.x, frame.x.y);
-        const bool is_locked = across < 1e-12;
+        const bool is_locked = across < 1e-12;  // gimbal lock: only the sum or difference of rx and rz is defined
         const double rx = is_locked ? std::atan2(-frame.z.y, frame.y.y) : std::atan2(frame.y.z, frame.z.z);
         json_.number("rx", rx).number("ry", std::atan2(-frame.x.z, across));
         json_.number("rz", is_locked ? 0.0 : std::atan2(frame.x.y, frame.x.x)).null("reference_cs").end();
     }
 
+    /// Begins a geometry with radius and conic constant.
     void begin_conic(const char* type, const Affine<double>& frame, const Surface& s) {
         begin_geometry(type, frame);
         write_radius("radius", s.bends_light() ? s.curvature : 0);
         json_.number("conic", s.bends_light() ? s.conic : 0.0);
     }
+    /// Writes a radius of curvature in mm; infinity for a plane.
     void write_radius(const char* key, double curvature) {
         json_.key(key).number_or_infinity(curvature == 0 ? kInfinity : 1 / curvature);
     }
 
+    /// Writes the shape and the frame of a surface.
     void write_geometry(std::size_t i, const Affine<double>& frame) {
         const Surface& s = lens_.surfaces[i];
         const SurfaceForm& form = s.form;
         const bool has_xy = !form.xy.empty() || form.zernike, is_odd = has_odd_terms(s);
-        const std::string beyond = beyond_polynomials(form);
+        const std::string omitted_terms = beyond_polynomials(form);
         const std::map<int, double> radial = radial_terms_of(s);
         if (!s.bends_light()) {
             begin_conic("StandardGeometry", frame, s);
         } else if (form.base == BaseForm::toroid) {
             if (has_xy || !form.radial.empty() || form.forbes)
-                leave_out(i, "has terms beside its toroid, which Optiland's geometries lack");
+                warn(i, "has terms beside its toroid, which Optiland's geometries lack");
             begin_geometry("ToroidalGeometry", frame);
             write_radius("radius_x", form.curvature_x);
             write_radius("radius_y", s.curvature);
             std::vector<double> terms = s.aspheric;
             if (!terms.empty()) terms.insert(terms.begin(), 0.0);
             json_.number("conic_yz", s.conic).numbers("coeffs_poly_y", terms);
-        } else if (form.zernike && form.xy.empty() && radial.empty() && beyond.empty()) {
+        } else if (form.zernike && form.xy.empty() && radial.empty() && omitted_terms.empty()) {
             begin_conic("ZernikePolynomialGeometry", frame, s);
             json_.numbers("coefficients", form.zernike->coefficients);
             json_.text("zernike_type", form.zernike->order == ZernikeOrder::noll ? "noll" : "fringe");
             json_.number("norm_radius", form.zernike->radius);
         } else {
-            if (!beyond.empty()) leave_out(i, "has " + beyond + ", which Optiland does not read");
+            if (!omitted_terms.empty()) warn(i, "has " + omitted_terms + ", which Optiland does not read");
             if (has_xy && is_odd)
-                leave_out(i, "has odd terms of r beside those of x and y, which Optiland's geometries lack");
+                warn(i, "has odd terms of r beside those of x and y, which Optiland's geometries lack");
             begin_conic(has_xy           ? "PolynomialGeometry"
                         : radial.empty() ? "StandardGeometry"
                         : is_odd         ? "OddAsphere"
                                          : "EvenAsphere",
                         frame, s);
             if (has_xy)
-                write_table(s);
+                write_polynomial_table(s);
             else if (!radial.empty())
                 json_.numbers("coefficients", radial_list(radial, is_odd ? 1 : 2));
         }
         if (s.bends_light() && form.base == BaseForm::biconic)
-            leave_out(i, "is a biconic, which Optiland has not: it is written as a conic");
+            warn(i, "is a biconic, which Optiland lacks: it is written as a conic");
         json_.end();
     }
 
-    /// Writes a row for each power of x, with a column for each power of y.
-    void write_table(const Surface& s) {
+    /// Writes the table of coefficients of a polynomial: row i, column j is the coefficient of x^i y^j.
+    void write_polynomial_table(const Surface& s) {
         const std::map<XyPower, double> terms = xy_terms_of(s);
         const std::size_t size = terms.empty() ? 1 : static_cast<std::size_t>(terms.rbegin()->first.first) + 1;
         std::vector<std::vector<double>> table(size, std::vector<double>(size, 0.0));
@@ -185,6 +191,7 @@ private:
         json_.end().end();
     }
 
+    /// Writes the apertures of a surface as nested differences and an intersection.
     void write_apertures(std::size_t i) {
         const Surface& s = lens_.surfaces[i];
         const ApertureShape& shape = s.aperture_shape;
@@ -198,27 +205,28 @@ private:
             if (shape.kind == ApertureOutline::polygon)
                 write_polygon(shape.corners, shape.offset);
             else
-                write_piece({shape.kind == ApertureOutline::rectangle, shape.half, shape.offset, 0});
+                write_shape({shape.kind == ApertureOutline::rectangle, shape.half, shape.offset, 0});
             json_.end();
         }
         for (std::size_t k = shape.obscurations.size(); k-- > 0;) {
-            const Obscuration& piece = shape.obscurations[k];
-            const bool is_turned = piece.angle_deg != 0;
-            if (is_turned && !piece.is_rectangle && piece.half.x != piece.half.y)
-                leave_out(i, "has an elliptic obscuration that is turned, which is written as if it were not");
+            const Obscuration& obscuration = shape.obscurations[k];
+            const bool is_rotated = obscuration.angle_deg != 0;
+            if (is_rotated && !obscuration.is_rectangle && obscuration.half.x != obscuration.half.y)
+                warn(i, "has a rotated elliptic obscuration, which is written without its rotation");
             json_.key("b");
-            if (is_turned && piece.is_rectangle)
-                write_polygon(rotated_rectangle(piece.half, piece.angle_deg), piece.offset);
+            if (is_rotated && obscuration.is_rectangle)
+                write_polygon(rotated_rectangle(obscuration.half, obscuration.angle_deg), obscuration.offset);
             else
-                write_piece(piece);
+                write_shape(obscuration);
             json_.end();
         }
     }
 
     JsonWriter& begin_aperture(const char* type) { return json_.begin_object().text("type", type); }
 
-    void write_piece(const Obscuration& piece) {
-        const auto& [is_rectangle, half, offset, angle_deg] = piece;
+    /// Writes an ellipse or rectangle; its rotation is ignored.
+    void write_shape(const Obscuration& obscuration) {
+        const auto& [is_rectangle, half, offset, angle_deg] = obscuration;
         begin_aperture(is_rectangle ? "RectangularAperture" : "EllipticalAperture");
         if (is_rectangle)
             json_.numbers({{"x_min", offset.x - half.x}, {"x_max", offset.x + half.x}})

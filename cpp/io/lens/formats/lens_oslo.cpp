@@ -1,6 +1,6 @@
-// Reads OSLO's .len: commands of a word and its values, one per line or separated by ';'. "LEN NEW" begins the lens,
-// NXT the next surface, END ends it; surface 0 is the object, the last one the image. Commands after END are about
-// optimisation, analysis and further configurations.
+// Reader of OSLO's lens files (.len). A command is a keyword with its values; commands stand on lines of their own or
+// are separated by ';'. "LEN NEW" begins the lens, NXT begins the next surface, and END ends the lens. Surface 0 is the
+// object, and the last one is the image. Commands after END concern optimisation, analysis and further configurations.
 
 #include <cmath>
 #include <tuple>
@@ -14,10 +14,10 @@
 namespace realcam::io {
 namespace {
 
-/// Object distances from this number of units on are infinite in OSLO.
-constexpr double kFarAway = 1e8;
+/// OSLO treats object distances from this number of the file's units on as infinite.
+constexpr double kOsloInfinity = 1e8;
 
-/// Medium as stated: a name, indices at the file's wavelengths, or n_d and V_d. Air if all are empty.
+/// Medium as specified: a glass name, indices at the file's wavelengths, or n_d and V_d. Air if all are empty.
 struct OsloMedium {
     std::string glass;
     std::vector<double> indices;
@@ -25,28 +25,33 @@ struct OsloMedium {
     int line = 0;
 };
 
-/// Surface as stated in a .len file.
+/// Surface as specified in a .len file.
 struct OsloSurface {
     PrescriptionSurface row;  ///< in the file's unit
-    std::map<int, double> aspheric;     ///< by the number in the command's name: ASn
-    std::map<int, double> plain_terms;  ///< by power: AD is the term of r^4
-    int aspheric_step = 0;              ///< AS1 is the term of r^2 (2) or of r (1); 0: not stated
+    std::map<int, double> aspheric;  ///< coefficients ASn by n
+    std::map<int, double> ad_terms;  ///< coefficients AD to AG by power of r, from 4
+    int aspheric_step = 0;  ///< power of r of AS1: 2 or 1; 0: not specified
     OsloMedium medium;
 
+    /// Property that is copied from a preceding surface.
     struct Pickup {
-        std::string what;  ///< CV, CVM, TH, THM, GLA or AP
-        int from;          ///< surface
-        double added;
+        std::string what;  ///< CV, CVM, TH, THM, GLA or AP; M: with the opposite sign
+        int from;  ///< number of the preceding surface
+        double offset;  ///< added to the copied value
         int line;
     };
     std::vector<Pickup> pickups;
-    std::optional<double> axial_slope, axial_height;  ///< solves: PU for the curvature, PY for the thickness
+    /// Solves for the axial ray: the slope behind the surface (PU) determines the curvature, and the height at the next
+    /// surface (PY) the thickness.
+    std::optional<double> axial_slope, axial_height;
 };
 
-bool is_numbered(std::string_view word, std::string_view name) {
+/// True if the word is `name` followed by a number, such as AS4.
+bool is_keyword_with_number(std::string_view word, std::string_view name) {
     return word.starts_with(name) && is_digits(word.substr(name.size()));
 }
 
+/// Reads all commands first, and converts the surfaces at the end of the file.
 class OsloReader : PrescriptionText {
 public:
     using PrescriptionText::PrescriptionText;
@@ -61,11 +66,12 @@ public:
     }
 
 private:
+    // Short names for the tables of keywords.
     using R = OsloReader;
     using C = LensCommand;
 
-    /// Commands that are ignored do not affect the path of light: names, notes, drawing, weights, settings of OSLO's
-    /// computations, and parts of a special aperture, which is recorded by its own command.
+    /// Table of all commands. Those that are ignored do not affect the path of light: names, notes, drawing, weights,
+    /// settings of OSLO's computations, and parts of a special aperture, which is recorded by its own command.
     static const Keywords<R>& commands() {
         static constexpr auto positive = [](R& r, C& c) {
             const double value = c.number(0, c.word);
@@ -76,9 +82,9 @@ private:
             r.field_ = {kind, std::fabs(c.number(0, c.word))};
         };
         static constexpr auto set_aperture = [](R& r, ApertureKind kind, double value) { r.aperture_ = {kind, value}; };
-        static constexpr auto add = [](R& r, C& c) { r.foreign(c); };
-        static constexpr auto add_unless_0 = [](R& r, C& c) {
-            if (c.number(0, c.word) != 0) r.foreign(c);
+        static constexpr auto reject = [](R& r, C& c) { r.unsupported(c); };
+        static constexpr auto reject_unless_0 = [](R& r, C& c) {
+            if (c.number(0, c.word) != 0) r.unsupported(c);
         };
         static const Keywords<R> table{
             {"DES NOT WW DRW LDP CBK CALLBACK GPRT ELMDF1 ELMDF2 BDI BDD VX PF LMN LME APCK DT OPDO AFO EVZ IMS IAR "
@@ -108,7 +114,7 @@ private:
             {"GIH", [](R& r, C& c) { set_field(r, c, FieldKind::image_height); }},
             {"TELE",
              [](R& r, C& c) {
-                 if (c.capital(0) == "ON") r.remark("TELE (a telecentric object) is left out");
+                 if (c.upper(0) == "ON") r.remark("TELE (a telecentric object) is ignored");
              }},
             // Surfaces
             {"RD RDF",
@@ -142,105 +148,111 @@ private:
             {"PY", [](R& r, C& c) { r.surface().axial_height = c.number(0, "the height of the axial ray"); }},
             {"AD AE AF AG",
              [](R& r, C& c) {
-                 r.surface().plain_terms[4 + 2 * (c.word[1] - 'D')] = c.number(0, "the coefficient " + c.word);
+                 r.surface().ad_terms[4 + 2 * (c.word[1] - 'D')] = c.number(0, "the coefficient " + c.word);
              }},
             {"ASP",
              [](R& r, C& c) {
-                 const std::string kind = c.capital(0, 10);
+                 const std::string kind = c.upper(0, 10);
                  if (kind == "ASR" || kind == "1" || kind == "ARA")
                      r.surface().aspheric_step = kind == "ARA" ? 1 : 2;
                  else if (kind != "ADO" && kind != "0")
-                     r.foreign("an aspheric surface of the kind " + printable(kind));
+                     r.unsupported("an aspheric surface of the kind " + printable(kind));
              }},
             // Features that are not modelled
-            {"DCX DCY DCZ TLA TLB TLC TOX TOY TOZ", add_unless_0, "a tilt or decentre"},
-            {"CVX RDX", add_unless_0, "a toric surface"},
-            {"PFL", add_unless_0, "a perfect lens"},
-            {"GSP", add_unless_0, "a grating"},
-            {"APN", add_unless_0, "a special aperture"},
-            {"DOR", add_unless_0, "a diffractive surface"},
-            {"HOR", add_unless_0, "a hologram"},
-            {"PUC PYC", add, "a solve of the chief ray"},
-            {"EC", add, "a solve of the edge"},
-            {"PI PIC", add, "a solve of the angle"},
-            {"BEN", add, "a bent axis"},
-            {"GC", add, "global coordinates"},
-            {"RCO", add, "a return of coordinates"},
-            {"GOR", add, "a grating"},
-            {"TIR", add, "total internal reflection"},
-            {"ELI NAC", add, "a non-sequential element"},
-            {"GRC GRD GRT", add, "a glass with a gradient"},
-            {"SPL", add, "a spline surface"},
-            {"ARR", add, "an array of lenses"},
-            {"EIK", add, "an eikonal surface"},
-            {"FZL FRN", add, "a Fresnel surface"},
+            {"DCX DCY DCZ TLA TLB TLC TOX TOY TOZ", reject_unless_0, "a tilt or decentre"},
+            {"CVX RDX", reject_unless_0, "a toric surface"},
+            {"PFL", reject_unless_0, "a perfect lens"},
+            {"GSP", reject_unless_0, "a grating"},
+            {"APN", reject_unless_0, "a special aperture"},
+            {"DOR", reject_unless_0, "a diffractive surface"},
+            {"HOR", reject_unless_0, "a hologram"},
+            {"PUC PYC", reject, "a solve of the chief ray"},
+            {"EC", reject, "a solve of the edge"},
+            {"PI PIC", reject, "a solve of the angle"},
+            {"BEN", reject, "a bent axis"},
+            {"GC", reject, "global coordinates"},
+            {"RCO", reject, "a return of coordinates"},
+            {"GOR", reject, "a grating"},
+            {"TIR", reject, "total internal reflection"},
+            {"ELI NAC", reject, "a non-sequential element"},
+            {"GRC GRD GRT", reject, "a glass with a gradient"},
+            {"SPL", reject, "a spline surface"},
+            {"ARR", reject, "an array of lenses"},
+            {"EIK", reject, "an eikonal surface"},
+            {"FZL FRN", reject, "a Fresnel surface"},
             {"LMO",
              [](R& r, C& c) {
-                 if (c.capital(0) == "NSS") r.foreign("a non-sequential group (LMO NSS)");
+                 if (c.upper(0) == "NSS") r.unsupported("a non-sequential group (LMO NSS)");
              }},
         };
         return table;
     }
 
+    /// The current surface, to which commands apply.
     OsloSurface& surface() { return surfaces_[current_]; }
     PrescriptionSurface& row() { return surfaces_[current_].row; }
 
-    /// Reads the commands of a line, separated by ';'; "//" begins a remark.
+    /// Reads the commands of a line, separated by ';'; "//" begins a comment.
     void read_line(std::string_view line) {
         std::size_t begin = 0;
         bool quoted = false;
         for (std::size_t i = 0; i < line.size(); ++i) {
             if (line[i] == '"') quoted = !quoted;
             if (quoted) continue;
-            const bool is_remark = line.substr(i).starts_with("//");
-            if (line[i] != ';' && !is_remark) continue;
+            const bool is_comment = line.substr(i).starts_with("//");
+            if (line[i] != ';' && !is_comment) continue;
             read_command(line.substr(begin, i - begin));
-            if (is_remark) return;
+            if (is_comment) return;
             begin = i + 1;
         }
         read_command(line.substr(begin));
     }
 
+    /// Reads a command from its text.
     void read_command(std::string_view text) {
         text = without_blanks(text);
         const std::string word = upper_case(text.substr(0, std::min<std::size_t>(text.find_first_of(" \t,"), 20)));
         const auto* known = commands().find(word);
         // The words of ignored commands are not split: they may be free text.
-        if (word.empty() || (known && !known->read) || is_numbered(word, "SNO") || is_numbered(word, "WW")) return;
+        if (word.empty() || (known && !known->read) || is_keyword_with_number(word, "SNO") ||
+            is_keyword_with_number(word, "WW"))
+            return;
         if (has_ended_) return read_late_command(word, text);
         std::vector<LensWord> words = lines_.words(text);
         words.erase(words.begin());
         C c(lines_, word, std::move(words));
         if (word == "LEN") return begin_lens(c);
-        if (surfaces_.empty()) return;  // skips the beginning of files of another kind
+        if (surfaces_.empty()) return;  // ignores text before LEN NEW
         if (word.starts_with("WV")) return read_wavelengths(c);
-        if (word.size() < 6 && is_numbered(word, "AS")) {
+        if (word.size() < 6 && is_keyword_with_number(word, "AS")) {
             surface().aspheric[std::stoi(word.substr(2))] = c.number(0, "the coefficient " + word);
             if (surface().aspheric_step == 0) surface().aspheric_step = 2;
         } else if (!commands().read(*this, c) && !word.starts_with("AVX") && !word.starts_with("AVY")) {
-            add_unknown(word);
+            add_unknown_keyword(word);
         }
     }
 
-    /// Reads a command after END, where some programs write the wavelengths. Later commands are about other things,
-    /// with their own keywords.
+    /// Reads a command after END: directly after it some programs write the wavelengths. Other commands do not concern
+    /// the lens.
     void read_late_command(const std::string& word, std::string_view text) {
         if (word == "CFG") remark("its further configurations (CFG) are left out");
-        has_late_wavelengths_ = has_late_wavelengths_ && word.starts_with("WV");
-        if (!has_late_wavelengths_) return;
+        reads_late_wavelengths_ = reads_late_wavelengths_ && word.starts_with("WV");
+        if (!reads_late_wavelengths_) return;
         std::vector<LensWord> words = lines_.words(text);
         words.erase(words.begin());
         read_wavelengths({lines_, word, std::move(words)});
     }
 
+    /// Reads LEN NEW: title, scale and the number of the image surface.
     void begin_lens(const C& c) {
         if (!surfaces_.empty()) lines_.fail("a second lens (LEN); expected only one");
-        if (c.capital(0) != "NEW") lines_.fail("expected LEN NEW, which begins a lens");
+        if (c.upper(0) != "NEW") lines_.fail("expected LEN NEW, which begins a lens");
         if (c.size() > 1) p_.title = std::string(c[1].text);
-        if (c.size() > 3) stated_last_ = c.whole(3, "the number of surfaces", 2, 1 << 20);
+        if (c.size() > 3) stated_image_ = c.whole(3, "the number of surfaces", 2, kMaxSurfaceNumber);
         surfaces_.emplace_back().row.line = lines_.number();
     }
 
+    /// Makes the next surface the current one, and adds it if it is new.
     void next_surface() {
         check_count(++current_);
         if (current_ == surfaces_.size()) {
@@ -250,31 +262,33 @@ private:
         lines_.set_surface(static_cast<int>(current_));
     }
 
+    /// Reads END, and checks the number of surfaces.
     void end_lens(const C& c) {
         const int last = static_cast<int>(surfaces_.size()) - 1;
-        const int stated = c.size() > 0 ? c.whole(0, "the number of the image", 0, 1 << 20) : last;
+        const int stated_number = c.size() > 0 ? c.whole(0, "the number of the image", 0, kMaxSurfaceNumber) : last;
         lines_.set_surface(0);
-        for (const int number : {stated, stated_last_ < 0 ? last : stated_last_})
+        for (const int number : {stated_number, stated_image_ < 0 ? last : stated_image_})
             if (number != last)
                 lines_.fail("the image is surface " + std::to_string(last) + "; the file says that it is " +
                             std::to_string(number));
         has_ended_ = true;
-        has_late_wavelengths_ = wavelengths_.empty();
+        reads_late_wavelengths_ = wavelengths_.empty();
     }
 
     /// Reads WV and all wavelengths, or WV2 and the second one.
     void read_wavelengths(const C& c) {
         if (c.word.size() > 2) {
             const std::string_view number = std::string_view(c.word).substr(2);
-            const int i = lines_.whole_number_of(number, "the number of the wavelength", 1, 1000);
+            const int i = lines_.whole_number_of(number, "the number of the wavelength", 1, kMaxWavelengths);
             wavelengths_[i] = c.number(0, "the wavelength");
             return;
         }
         wavelengths_.clear();
-        for (std::size_t i = 0; i < c.size() && i < kMostFileFields; ++i)
+        for (std::size_t i = 0; i < c.size() && i < kMaxFileFields; ++i)
             wavelengths_[static_cast<int>(i) + 1] = c.number(i, "each wavelength");
     }
 
+    /// Reads GLA: a glass name or code, MODEL with n_d and V_d, or indices at the file's wavelengths.
     void read_glass(const C& c) {
         if (c.size() == 0) lines_.fail("GLA needs a glass");
         row().is_mirror = false;
@@ -284,13 +298,13 @@ private:
             std::string_view rest = i < c.size() ? c[i].text : "";
             return take_number(rest) && rest.empty();
         };
-        const bool is_model = c.capital(0, 4) == "MOD", is_code = c.size() == 1 && glass_of_number(c[0].text);
+        const bool is_model = c.upper(0, 4) == "MOD", is_code = c.size() == 1 && glass_of_number(c[0].text);
         if (!is_model && (!is_number(0) || is_code)) {
             medium.glass = std::string(c[0].text);
             return;
         }
         const std::size_t first = !is_model ? 0 : is_number(1) ? 1 : 2;  // a name may come between
-        for (std::size_t i = first; i < c.size() && medium.indices.size() < kMostFileIndices; ++i)
+        for (std::size_t i = first; i < c.size() && medium.indices.size() < kMaxFileIndices; ++i)
             medium.indices.push_back(c.number(i, "the index"));
         if (medium.indices.empty()) lines_.fail("GLA needs a glass, or its indices");
         if (!is_model || medium.indices.size() != 2 || !(medium.indices[1] >= 10)) return;
@@ -298,34 +312,37 @@ private:
         medium.indices.clear();
     }
 
+    /// Reads AP: a keyword (CHK: the aperture blocks light) and the radius.
     void read_aperture(const C& c) {
         std::size_t i = 0;
         for (; i < c.size(); ++i) {
-            const std::string kind = c.capital(i, 4);
+            const std::string kind = c.upper(i, 4);
             if (kind != "CHK" && kind != "UNC" && kind != "SPC") break;
-            row().blocks = kind == "CHK";
+            row().has_aperture = kind == "CHK";
         }
         const double radius = c.number(i, "the radius of the aperture");
         if (radius < 0) lines_.fail("the radius of the aperture must be positive");
-        // An object at infinity has a radius as large as its distance.
+        // OSLO gives an object at infinity a radius as large as its distance.
         row().clear_semi_diameter = unit_ * radius > kLongest ? 0 : radius;
     }
 
+    /// Reads PK: property, surface, and an offset.
     void read_pickup(const C& c) {
-        if (c.size() < 2) lines_.fail("PK needs what is picked up, and a surface");
-        const std::string what = c.capital(0, 8);
+        if (c.size() < 2) lines_.fail("PK needs a property and the surface from which it is picked up");
+        const std::string what = c.upper(0, 8);
         static const Keywords<R> known{{"CV CVM TH THM GLA AP"}};
-        if (!known.find(what)) return foreign("a pickup of " + printable(what) + " (PK)");
-        const int stated = c.whole(1, "the surface that is picked up", -1000, 1000);
+        if (!known.find(what)) return unsupported("a pickup of " + printable(what) + " (PK)");
+        const int stated_number = c.whole(1, "the surface that is picked up", -1000, 1000);
         // A negative number is relative to this surface.
-        const int from = stated < 0 ? row().number + stated : stated;
+        const int from = stated_number < 0 ? row().number + stated_number : stated_number;
         if (from < 0 || from >= row().number)
             lines_.fail("PK " + what + " picks up from surface " + std::to_string(from) +
-                        "; expected a surface in front");
-        const double added = c.size() > 2 ? c.number(2, "what is added") : 0;
-        surface().pickups.push_back({what, from, added, lines_.number()});
+                        "; expected a preceding surface");
+        const double offset = c.size() > 2 ? c.number(2, "the offset") : 0;
+        surface().pickups.push_back({what, from, offset, lines_.number()});
     }
 
+    /// Resolves pickups and solves, and converts the stored surfaces to the prescription.
     void finish() {
         if (surfaces_.size() < 3) fail_at("has no surface between object and image");
         for (const auto& [i, um] : wavelengths_) wavelengths_um_.push_back(um);
@@ -334,31 +351,33 @@ private:
         set_wavelengths(nm, 0);
         if (wavelengths_um_.empty()) wavelengths_um_ = {0.58756, 0.48613, 0.65627};  // OSLO's defaults
         p_.wavelength_nm = 1000 * wavelengths_um_.front();
-        // Pickups refer to surfaces in front, whose own pickups are resolved by then.
+        // Pickups refer to preceding surfaces, whose own pickups are resolved by then.
         for (OsloSurface& s : surfaces_)
             for (const OsloSurface::Pickup& pickup : s.pickups) pick_up(s, pickup);
         for (OsloSurface& s : surfaces_) s.row.material = material_of(s);
         resolve_solves();
         const PrescriptionSurface &object = surfaces_.front().row, &image = surfaces_.back().row;
-        set_object(object.thickness >= kFarAway ? kInfinity : unit_ * object.thickness, object.curvature, object.line);
+        set_object(object.thickness >= kOsloInfinity ? kInfinity : unit_ * object.thickness, object.curvature,
+                   object.line);
         p_.image_curvature = image.curvature;
-        if (!object.material.is_air()) add_foreign("an object inside a glass", object.line, 0);
+        if (!object.material.is_air()) add_unsupported("an object inside a glass", object.line, 0);
         p_.defocus = unit_ * image.thickness;
         bool has_stop = false;
         for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) has_stop = has_stop || surfaces_[i].row.is_stop;
         if (!has_stop) surfaces_[1].row.is_stop = true;  // OSLO's default
         for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) p_.surfaces.push_back(in_millimetres(surfaces_[i]));
         finish_aperture();
-        tell_unknown("commands");
+        remark_unknown_keywords("commands");
     }
 
+    /// Returns the row of a surface in mm, with its aspheric terms.
     PrescriptionSurface in_millimetres(const OsloSurface& s) const {
         PrescriptionSurface row = s.row;
         row.curvature /= unit_;
         row.thickness *= unit_;
         row.clear_semi_diameter *= unit_;
         if (row.is_mirror) row.material = Glass::air();
-        for (const auto& [power, value] : s.plain_terms) add_term(row, power, value, unit_);
+        for (const auto& [power, value] : s.ad_terms) add_term(row, power, value, unit_);
         for (const auto& [index, value] : s.aspheric) {
             if (index == 0 && value != 0) fail_at("AS0 moves the vertex", row.line, row.number);
             if (index > 0) add_term(row, s.aspheric_step * index, value, unit_);
@@ -366,13 +385,15 @@ private:
         return row;
     }
 
+    /// Sets fields and aperture of the prescription.
     void finish_aperture() {
         if (field_) {
             p_.field_kind = field_->first;
             p_.fields = {{0, 0}, {0, (p_.field_kind == FieldKind::angle_deg ? 1 : unit_) * field_->second}};
         }
         const double radius = unit_ * beam_radius_.value_or(1);
-        if (!aperture_ && !beam_radius_) remark("it states no aperture: OSLO's beam radius of one unit is taken");
+        if (!aperture_ && !beam_radius_)
+            remark("it specifies no aperture; OSLO's default, a beam radius of one unit, is assumed");
         if (!aperture_ && std::isinf(p_.object_distance)) {
             aperture_ = {ApertureKind::entrance_pupil_diameter, 2 * radius};
         } else if (!aperture_) {  // the beam has this radius at the first surface, wherever the pupil is
@@ -381,27 +402,28 @@ private:
         std::tie(p_.aperture_kind, p_.aperture) = *aperture_;
     }
 
+    /// Copies the property of a pickup to surface `s`.
     void pick_up(OsloSurface& s, const OsloSurface::Pickup& pickup) const {
         const OsloSurface& from = surfaces_[static_cast<std::size_t>(pickup.from)];
         const auto fail = [&](const std::string& message) { fail_at(message, pickup.line, s.row.number); };
         const auto refuse_solve = [&](const std::string& what, const std::optional<double>& solve) {
             if (solve)
                 fail("picks up the " + what + " of surface " + std::to_string(from.row.number) +
-                     ", which is set by a solve; expected a stated value");
+                     ", which is set by a solve; expected a value in the file");
         };
         const double sign = pickup.what.ends_with('M') ? -1 : 1;
-        if (pickup.what.starts_with("CV")) {  // the complete shape
+        if (pickup.what.starts_with("CV")) {  // copies the complete shape
             refuse_solve("curvature", from.axial_slope);
-            s.row.curvature = sign * from.row.curvature + pickup.added;
+            s.row.curvature = sign * from.row.curvature + pickup.offset;
             s.row.conic = from.row.conic;
             s.aspheric_step = from.aspheric_step;
             s.aspheric = from.aspheric;
-            s.plain_terms = from.plain_terms;
-            for (auto* terms : {&s.aspheric, &s.plain_terms})
+            s.ad_terms = from.ad_terms;
+            for (auto* terms : {&s.aspheric, &s.ad_terms})
                 for (auto& [power, value] : *terms) value *= sign;
         } else if (pickup.what.starts_with("TH")) {
             refuse_solve("thickness", from.axial_height);
-            s.row.thickness = sign * from.row.thickness + pickup.added;
+            s.row.thickness = sign * from.row.thickness + pickup.offset;
         } else if (pickup.what == "AP") {
             s.row.clear_semi_diameter = from.row.clear_semi_diameter;
         } else {
@@ -412,16 +434,18 @@ private:
         }
     }
 
+    /// Returns the glass of a name. Throws UnknownGlass.
     Glass named_glass(const std::string& name) {
-        // OSLO's files name no maker; OSLO searches Schott's catalogue first, which shares plain names with other
-        // makers.
+        // OSLO's files name no maker. OSLO searches Schott's catalogue first; other makers use the same names for other
+        // glasses.
         const std::vector<std::string> first{"SCHOTT"};
         if (!glasses_.in_catalogue(name, first)) return glasses_.find(name, {});
         if (!glasses_.in_catalogue(name, {}))
-            remark("the glass " + in_quotes(name) + ", whose name several makers use, is taken for Schott's");
+            remark("the glass " + in_quotes(name) + ", whose name several makers use, is assumed to be Schott's");
         return glasses_.find(name, first);
     }
 
+    /// Returns the medium behind a surface. Throws LensReadError.
     Glass material_of(const OsloSurface& s) {
         const auto& [glass, indices, pair, line] = s.medium;
         try {
@@ -445,27 +469,27 @@ private:
     /// need it.
     void resolve_solves() {
         const double object = surfaces_.front().row.thickness, radius = beam_radius_.value_or(1);
-        ParaxialRay ray{radius, object >= kFarAway ? 0 : radius / object};
+        ParaxialRay ray{radius, object >= kOsloInfinity ? 0 : radius / object};
         double index = surfaces_.front().row.material.index(p_.wavelength_nm), sign = 1;
         for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) {
-            auto& [row, aspheric, plain_terms, step, medium, pickups, axial_slope, axial_height] = surfaces_[i];
+            auto& [row, aspheric, ad_terms, step, medium, pickups, axial_slope, axial_height] = surfaces_[i];
             const auto fail = [&, line = row.line, number = row.number](const std::string& message) {
                 fail_at(message, line, number);
             };
             // Light returns through the medium in front of a mirror.
             if (row.is_mirror) row.material = surfaces_[i - 1].row.material;
-            const double before = sign * index;
+            const double index_before = sign * index;
             if (row.is_mirror) sign = -sign;
             index = row.material.index(p_.wavelength_nm);
-            const double after = sign * index;
+            const double index_behind = sign * index;
             if ((axial_slope || axial_height.value_or(0) != 0) && aperture_)
                 fail("a solve of the axial ray (PU, PY) needs the radius of the beam (EBR)");
             if (axial_slope) {
-                const double bend = ray.height * (after - before);
+                const double bend = ray.height * (index_behind - index_before);
                 if (bend == 0) fail("no curvature gives the axial ray the slope of the solve (PU)");
-                row.curvature = (before * ray.slope - after * *axial_slope) / bend;
+                row.curvature = (index_before * ray.slope - index_behind * *axial_slope) / bend;
             }
-            ray = refract_paraxial(ray, row.curvature, before, after);
+            ray = refract_paraxial(ray, row.curvature, index_before, index_behind);
             if (axial_height) {
                 if (ray.slope == 0) fail("no thickness gives the axial ray the height of the solve (PY)");
                 row.thickness = (*axial_height - ray.height) / ray.slope;
@@ -475,11 +499,12 @@ private:
     }
 
     std::vector<OsloSurface> surfaces_;  ///< including object and image
-    std::size_t current_ = 0;
-    bool has_ended_ = false, has_late_wavelengths_ = false;
-    int stated_last_ = -1;  ///< number of the image surface, from the first line
-    double unit_ = 1;  ///< mm
-    std::map<int, double> wavelengths_;  ///< um, from 1
+    std::size_t current_ = 0;  ///< index of the surface to which commands apply
+    bool has_ended_ = false;  ///< true after END
+    bool reads_late_wavelengths_ = false;  ///< true if wavelengths directly after END are read
+    int stated_image_ = -1;  ///< number of the image surface, from the first line
+    double unit_ = 1;  ///< length of the file's unit, mm
+    std::map<int, double> wavelengths_;  ///< um, by number from 1
     std::vector<double> wavelengths_um_;  ///< the same, or OSLO's defaults
     std::optional<double> beam_radius_;  ///< at the first surface, in the file's unit
     std::optional<std::pair<ApertureKind, double>> aperture_;

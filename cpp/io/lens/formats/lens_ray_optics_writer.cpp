@@ -1,4 +1,4 @@
-// Writes ray-optics' .roa: the data of its sequential model; the program computes other data itself.
+// Writer of ray-optics' JSON files (.roa): only the sequential model, from which ray-optics computes its other data.
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace realcam::io {
 namespace {
 
-constexpr double kFarAway = 1e10;  // ray-optics' infinity
+constexpr double kRayOpticsInfinity_mm = 1e10;  // mm, stands for infinity in ray-optics
 
 class RayOpticsWriter : PrescriptionWriter {
 public:
@@ -19,7 +19,7 @@ public:
 
     LensText write() {
         if (!lens_.zoom.positions.empty())
-            result_.warnings.emplace_back("zoom positions, which a ray-optics file has no word for");
+            result_.warnings.emplace_back("zoom positions, which a ray-optics file cannot express");
         json_.begin_object().key("optical_model");
         begin("rayoptics.optical.opticalmodel", "OpticalModel");
         json_.text("ro_version", "0.9.8").truth("radius_mode", false).key("system_spec");
@@ -41,22 +41,25 @@ public:
     }
 
 private:
-    /// Begins an object of a class of Python, as the value of the last key or as an element.
+    /// Begins an object of a Python class, as the value of the last key or as an element; end() ends it.
     JsonWriter& begin(const std::string& module, const char* type) {
         json_.begin_object().begin_array("__instance_type__").text(module).text(type).end();
         return json_.begin_object("attributes");
     }
+    /// Begins a part of the optical specification under a key.
     JsonWriter& begin_part(const char* key, const char* type) {
         json_.key(key);
         return begin("rayoptics.raytr.opticalspec", type);
     }
     void end() { json_.end().end(); }
 
+    /// Writes a NumPy array.
     void write_array(const char* key, const std::vector<double>& values) {
         json_.begin_object(key).numbers("__ndarray__", values).text("dtype", "float64");
         json_.numbers("shape", {static_cast<double>(values.size())}).end();
     }
 
+    /// Profile id of a surface.
     static std::string name_of(std::size_t surface) { return std::to_string(surface + 1); }
 
     void write_sequence() {
@@ -69,16 +72,17 @@ private:
             const char* mode = s.type == SurfaceType::mirror ? "reflect" : "transmit";
             write_interface(name_of(i), "", mode, s.clear_semi_diameter, s.placement, i);
         }
-        write_interface(name_of(count), "Img", "dummy", corner(), lens_.film_placement, count);
+        write_interface(name_of(count), "Img", "dummy", film_corner(), lens_.film_placement, count);
         json_.end().begin_array("gaps");
-        write_gap(std::isfinite(object_distance()) ? object_distance() : kFarAway, Glass::air());
+        write_gap(std::isfinite(object_distance()) ? object_distance() : kRayOpticsInfinity_mm, Glass::air());
         for (std::size_t i = 0; i < count; ++i) write_gap(thickness(i), medium_behind(i));
         json_.end().number("stop_surface", lens_.stop_index() + 1);
         json_.number("cur_surface", static_cast<double>(count)).truth("do_apertures", false);
         end();
     }
 
-    /// `surface`: the one that has apertures; their number, if there is none.
+    /// Writes an interface. `profile`: id of its shape. `rim`: semi-diameter, mm. `surface`: index of the surface whose
+    /// apertures are written; the number of surfaces for object and image.
     void write_interface(const std::string& profile, const char* label, const char* mode, double rim,
                          const SurfacePlacement& placement, std::size_t surface) {
         begin("rayoptics.elem.surface", "Surface").text("label", label).number("delta_n", 0);
@@ -98,19 +102,19 @@ private:
         const auto& [decentre, tilt, returns] = placement;
         begin("rayoptics.elem.surface", "DecenterData").text("_dtype", returns ? "dec and return" : "decenter");
         write_array("dec", {decentre.x, decentre.y, decentre.z});
-        write_array("euler", {-tilt.x, -tilt.y, tilt.z});  // the first two angles are positive clockwise
+        write_array("euler", {-tilt.x, -tilt.y, tilt.z});  // the first two angles have the opposite sign
         write_array("rot_pt", {0, 0, 0});
         json_.null("rot_mat");
         end();
     }
 
-    void write_aperture(ApertureOutline kind, Vec2d half, Vec2d offset, bool blocks) {
+    void write_aperture(ApertureOutline kind, Vec2d half, Vec2d offset, bool is_obscuration) {
         const bool is_circle = kind == ApertureOutline::circle;
         begin("rayoptics.elem.surface", is_circle                            ? "Circular"
                                         : kind == ApertureOutline::rectangle ? "Rectangular"
                                                                              : "Elliptical");
         json_.number("x_offset", offset.x).number("y_offset", offset.y).number("rotation", 0);
-        json_.truth("is_obscuration", blocks);
+        json_.truth("is_obscuration", is_obscuration);
         if (is_circle)
             json_.number("radius", half.x);
         else
@@ -126,16 +130,17 @@ private:
         if (const double inner = s.inner_semi_diameter; inner > 0)
             write_aperture(ApertureOutline::circle, {inner, inner}, {0, 0}, true);
         if (shape.kind == ApertureOutline::polygon)
-            leave_out(i, "has a polygonal aperture, which a ray-optics file has no word for");
+            warn(i, "has a polygonal aperture, which a ray-optics file cannot express");
         else if (shape.half.x > 0)
             write_aperture(shape.kind, shape.half, shape.offset, false);
-        for (const Obscuration& piece : shape.obscurations) {
-            const bool is_turned = piece.angle_deg != 0 && (piece.is_rectangle || piece.half.x != piece.half.y);
-            if (is_turned)
-                leave_out(i, "has an obscuration that is turned, which a ray-optics file has no word for");
+        for (const Obscuration& obscuration : shape.obscurations) {
+            const bool is_rotated =
+                obscuration.angle_deg != 0 && (obscuration.is_rectangle || obscuration.half.x != obscuration.half.y);
+            if (is_rotated)
+                warn(i, "has a rotated obscuration, which a ray-optics file cannot express");
             else
-                write_aperture(piece.is_rectangle ? ApertureOutline::rectangle : ApertureOutline::ellipse, piece.half,
-                               piece.offset, true);
+                write_aperture(obscuration.is_rectangle ? ApertureOutline::rectangle : ApertureOutline::ellipse,
+                               obscuration.half, obscuration.offset, true);
         }
     }
 
@@ -176,19 +181,18 @@ private:
         end();
     }
 
+    /// Writes the shape of a surface.
     void write_profile(std::size_t i) {
         const Surface& s = lens_.surfaces[i];
         const SurfaceForm& form = s.form;
         if (!s.bends_light()) return write_sphere(name_of(i), 0);
         const bool is_toroid = form.base == BaseForm::toroid, odd = !is_toroid && has_odd_terms(s);
-        if (form.base == BaseForm::biconic)
-            leave_out(i, "is a biconic, which ray-optics lacks: it is written as a conic");
-        if (!form.xy.empty() || form.zernike)
-            leave_out(i, "has terms of x and y or of Zernike, which ray-optics lacks");
+        if (form.base == BaseForm::biconic) warn(i, "is a biconic, which ray-optics lacks: it is written as a conic");
+        if (!form.xy.empty() || form.zernike) warn(i, "has terms of x and y or of Zernike, which ray-optics lacks");
         if (const std::string terms = beyond_polynomials(form); !terms.empty())
-            leave_out(i, "has " + terms + ", which ray-optics lacks");
+            warn(i, "has " + terms + ", which ray-optics lacks");
         if (is_toroid && (!form.radial.empty() || form.forbes))
-            leave_out(i, "has radial terms on a toroid, which ray-optics lacks");
+            warn(i, "has radial terms on a toroid, which ray-optics lacks");
         const std::map<int, double> radial = radial_terms_of(s);
         if (!is_toroid && radial.empty() && s.conic == 0) return write_sphere(name_of(i), s.curvature);
         std::vector<double> terms = radial_list(radial, odd ? 1 : 2);
@@ -225,11 +229,11 @@ private:
 
     void write_fields() {
         begin_part("field_of_view", "FieldSpec");
-        json_.begin_array("key").text("field").text("image").text("real height").end().number("value", corner());
+        json_.begin_array("key").text("field").text("image").text("real height").end().number("value", film_corner());
         json_.truth("is_relative", false).truth("is_wide_angle", false);
         json_.begin_array("index_labels").text("axis").text("corner").end().text("index_label_type", "auto");
         json_.begin_array("fields");
-        for (const double height : {0.0, corner()}) {
+        for (const double height : {0.0, film_corner()}) {
             begin("rayoptics.raytr.opticalspec", "Field").number("x", 0).number("y", height);
             for (const char* cut : {"vux", "vuy", "vlx", "vly"}) json_.number(cut, 0);
             json_.number("wt", 1).null("aim_info");

@@ -23,13 +23,13 @@ double PrescriptionJson::number(const Json& value, const std::string& what) cons
     return value.number(0);
 }
 
-double PrescriptionJson::number_or(const Json& value, const std::string& what, double otherwise) const {
-    return value.is_null() ? otherwise : number(value, what);
+double PrescriptionJson::number_or(const Json& value, const std::string& what, double default_value) const {
+    return value.is_null() ? default_value : number(value, what);
 }
 
-std::vector<double> PrescriptionJson::numbers(const Json& list, const std::string& what, std::size_t most) const {
+std::vector<double> PrescriptionJson::numbers(const Json& list, const std::string& what, std::size_t max_count) const {
     std::vector<double> values;
-    for (std::size_t i = 0; i < list.size() && i < most; ++i) values.push_back(number(list[i], what));
+    for (std::size_t i = 0; i < list.size() && i < max_count; ++i) values.push_back(number(list[i], what));
     return values;
 }
 
@@ -39,7 +39,7 @@ bool PrescriptionJson::is_infinite(const Json& value) {
 
 void PrescriptionJson::check_count(std::size_t surfaces, const std::string& what) const {
     if (surfaces < 3) fail("expected " + what + " with an object, a lens and an image");
-    if (surfaces > kMostFileSurfaces) fail("the file has more than " + std::to_string(kMostFileSurfaces) + " surfaces");
+    if (surfaces > kMaxFileSurfaces) fail("the file has more than " + std::to_string(kMaxFileSurfaces) + " surfaces");
 }
 
 void PrescriptionJson::add_terms(const Json& list, int step, const std::string& what, PrescriptionSurface& row,
@@ -48,10 +48,11 @@ void PrescriptionJson::add_terms(const Json& list, int step, const std::string& 
     for (const double value : numbers(list, what, 100)) add_term(row, power += step, value, unit);
 }
 
-void PrescriptionJson::add_field(const Json& field, double scale, const std::array<const char*, 4>& cuts) {
+void PrescriptionJson::add_field(const Json& field, double scale, const std::array<const char*, 4>& vignetting_keys) {
     const auto value = [&](const char* key) { return number_or(field[key], "a field", 0); };
-    p_.fields.push_back({scale * value("x"), scale * value("y"), vignetting(value(cuts[0])), vignetting(value(cuts[1])),
-                         vignetting(value(cuts[2])), vignetting(value(cuts[3]))});
+    p_.fields.push_back({scale * value("x"), scale * value("y"), vignetting(value(vignetting_keys[0])),
+                         vignetting(value(vignetting_keys[1])), vignetting(value(vignetting_keys[2])),
+                         vignetting(value(vignetting_keys[3]))});
 }
 
 }  // namespace realcam::io

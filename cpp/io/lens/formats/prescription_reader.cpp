@@ -12,27 +12,27 @@ PrescriptionReader::PrescriptionReader(const char* format, const std::string& fi
     p_.format = format;
 }
 
-void PrescriptionReader::add_foreign(const std::string& what, int line, int surface) {
-    if (foreign_.emplace(what, surface).second) p_.foreign.push_back({what, line, surface});
+void PrescriptionReader::add_unsupported(const std::string& text, int line, int surface) {
+    if (unsupported_.emplace(text, surface).second) p_.unsupported.push_back({text, line, surface});
 }
 
-void PrescriptionReader::remark(const std::string& what) {
-    if (remarks_.insert(what).second) p_.remarks.push_back(what);
+void PrescriptionReader::remark(const std::string& text) {
+    if (remarks_.insert(text).second) p_.remarks.push_back(text);
 }
 
 void PrescriptionReader::set_object(double distance, double curvature, int line) {
     p_.object_distance = distance >= kLongest ? kInfinity : distance;
-    if (curvature != 0 && std::isfinite(p_.object_distance)) add_foreign("a curved object", line, 0);
+    if (curvature != 0 && std::isfinite(p_.object_distance)) add_unsupported("a curved object", line, 0);
 }
 
 void PrescriptionReader::set_wavelengths(std::vector<double> wavelengths_nm, std::size_t main) {
-    if (wavelengths_nm.empty()) return remark("it states no wavelength: that of the d line is taken");
+    if (wavelengths_nm.empty()) return remark("it specifies no wavelength; the d line is assumed");
     p_.wavelength_nm = wavelengths_nm[main];
     p_.wavelengths_nm = std::move(wavelengths_nm);
 }
 
-std::string LensCommand::capital(std::size_t i, std::size_t most) const {
-    return i < size() ? upper_case(values_[i].text.substr(0, most)) : std::string();
+std::string LensCommand::upper(std::size_t i, std::size_t max_length) const {
+    return i < size() ? upper_case(values_[i].text.substr(0, max_length)) : std::string();
 }
 
 double LensCommand::number(std::size_t i, const std::string& name) const {
@@ -40,8 +40,8 @@ double LensCommand::number(std::size_t i, const std::string& name) const {
     return lines_.number_of(values_[i].text, name);
 }
 
-double LensCommand::number_or(std::size_t i, const std::string& name, double otherwise) const {
-    return i < size() && !values_[i].is_quoted ? number(i, name) : otherwise;
+double LensCommand::number_or(std::size_t i, const std::string& name, double default_value) const {
+    return i < size() && !values_[i].is_quoted ? number(i, name) : default_value;
 }
 
 double LensCommand::number_or_infinity(std::size_t i, const std::string& name) const {
@@ -49,34 +49,34 @@ double LensCommand::number_or_infinity(std::size_t i, const std::string& name) c
     return number(i, name);
 }
 
-std::vector<double> LensCommand::numbers(std::size_t from, const std::string& name) const {
+std::vector<double> LensCommand::numbers(std::size_t first, const std::string& name) const {
     std::vector<double> list;
-    for (std::size_t i = from; i < size(); ++i) list.push_back(number(i, "each value of " + name));
+    for (std::size_t i = first; i < size(); ++i) list.push_back(number(i, "each value of " + name));
     return list;
 }
 
-int LensCommand::whole(std::size_t i, const std::string& name, int least, int most) const {
+int LensCommand::whole(std::size_t i, const std::string& name, int min, int max) const {
     if (i >= size()) lines_.fail(name + " is missing");
-    return lines_.whole_number_of(values_[i].text, name, least, most);
+    return lines_.whole_number_of(values_[i].text, name, min, max);
 }
 
-void PrescriptionText::add_unknown(std::string_view word) {
-    if (unknown_.size() < kMostUnknown) unknown_.insert(printable(word.substr(0, 40)));
+void PrescriptionText::add_unknown_keyword(std::string_view word) {
+    if (unknown_.size() < kMaxUnknownWords) unknown_.insert(printable(word.substr(0, 40)));
 }
 
-void PrescriptionText::tell_unknown(const std::string& what) {
-    if (!unknown_.empty()) remark(what + " that are not known were left out: " + short_list(unknown_));
+void PrescriptionText::remark_unknown_keywords(const std::string& subject) {
+    if (!unknown_.empty()) remark("unknown " + subject + " are ignored: " + short_list(unknown_));
 }
 
 std::vector<double> PrescriptionText::field_values(const LensCommand& command) const {
-    if (command.size() > kMostFileFields)
-        lines_.fail(command.word + " has more than " + std::to_string(kMostFileFields) + " values");
+    if (command.size() > kMaxFileFields)
+        lines_.fail(command.word + " has more than " + std::to_string(kMaxFileFields) + " values");
     return command.numbers(0, command.word);
 }
 
 void PrescriptionText::check_count(std::size_t surfaces) const {
-    if (surfaces >= kMostFileSurfaces)
-        lines_.fail("the file has more than " + std::to_string(kMostFileSurfaces) + " surfaces");
+    if (surfaces >= kMaxFileSurfaces)
+        lines_.fail("the file has more than " + std::to_string(kMaxFileSurfaces) + " surfaces");
 }
 
 std::optional<double> millimetres_of(const std::string& unit) {
@@ -91,9 +91,9 @@ void add_term(PrescriptionSurface& row, int power, double value, double unit) {
 }
 
 std::pair<int, int> xy_powers(int number) {
-    int left = number, degree = 0;
-    while (left > degree) left -= ++degree;
-    return {degree - left, left};
+    int power_of_y = number, degree = 0;
+    while (power_of_y > degree) power_of_y -= ++degree;
+    return {degree - power_of_y, power_of_y};
 }
 
 void set_zernike(PrescriptionSurface& row, ZernikeOrder order, double radius, std::vector<double> coefficients) {
@@ -143,17 +143,17 @@ void set_decentre(const SurfacePlacement& placement, DecentreKind kind, Prescrip
     if (kind == DecentreKind::bend) row.behind = SurfacePlacement{{}, placement.tilt_deg, false}.frame();
 }
 
-void turn_about_axis(PrescriptionSurface& row) {
-    const Affine<double> turn = rotation(0, 0, 90);
-    row.before = row.before * turn;
-    row.behind = inverse_motion(turn) * row.behind;
+void swap_toroid_axes(PrescriptionSurface& row) {
+    const Affine<double> quarter_turn = rotation(0, 0, 90);
+    row.before = row.before * quarter_turn;
+    row.behind = inverse_motion(quarter_turn) * row.behind;
     ApertureShape& shape = row.aperture_shape;
-    const auto turned = [](Vec2d v) { return Vec2d{v.y, -v.x}; };
+    const auto rotated = [](Vec2d v) { return Vec2d{v.y, -v.x}; };
     std::swap(shape.half.x, shape.half.y);
-    shape.offset = turned(shape.offset);
-    for (Vec2d& corner : shape.corners) corner = turned(corner);
+    shape.offset = rotated(shape.offset);
+    for (Vec2d& corner : shape.corners) corner = rotated(corner);
     for (Obscuration& piece : shape.obscurations) {
-        piece.offset = turned(piece.offset);
+        piece.offset = rotated(piece.offset);
         piece.angle_deg -= 90;
     }
 }

@@ -10,7 +10,7 @@
 namespace realcam::io {
 namespace {
 
-/// Adds the powers of r of u^4 times a polynomial in t = 2 u^2 - 1.
+/// Adds the powers of r of Forbes terms on a conic: u^4 times a polynomial in t = 2 u^2 - 1, with u = r / radius.
 void add_forbes(const ForbesTerms& forbes, std::map<int, double>& terms) {
     const std::vector<double> in_t = forbes.in_powers();
     std::vector<double> in_square(in_t.size(), 0.0);
@@ -29,27 +29,28 @@ void add_forbes(const ForbesTerms& forbes, std::map<int, double>& terms) {
 
 PrescriptionWriter::PrescriptionWriter(const LensSystem& lens, const std::string& format) : lens_(lens) {
     std::vector<std::string>& list = result_.warnings;
-    const std::string none = ", which a " + format + " file has no word for";
+    const std::string cannot_express = ", which a " + format + " file cannot express";
     std::string coated;
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
         if (!(lens.surfaces[i].coating == Coating())) coated += (coated.empty() ? "" : ", ") + std::to_string(i + 1);
-    if (!coated.empty()) list.push_back("the coatings of surfaces " + coated + none);
+    if (!coated.empty()) list.push_back("the coatings of surfaces " + coated + cannot_express);
     if (lens.iris.blades != 0)
-        list.push_back("the " + std::to_string(lens.iris.blades) + " blades of the diaphragm" + none);
-    if (lens.focusing.moves_group() || lens.focusing.nearest_mm > 0) list.push_back("how the lens focuses" + none);
+        list.push_back("the " + std::to_string(lens.iris.blades) + " blades of the diaphragm" + cannot_express);
+    if (lens.focusing.moves_group() || lens.focusing.nearest_mm > 0)
+        list.push_back("the focusing of the lens" + cannot_express);
     if (lens.stop_semi_diameter < lens.stop().clear_semi_diameter)
-        list.push_back("how far the diaphragm opens: it is written as it is closed");
-    if (!lens.source.empty()) list.push_back("the source of the lens" + none);
+        list.push_back("the full opening of the diaphragm: its current opening is written");
+    if (!lens.source.empty()) list.push_back("the source of the lens" + cannot_express);
     if (std::fabs(lens.film_width * 2 - lens.film_height * 3) > 1e-9 * lens.film_width)
-        list.push_back("the film's shape: it is written as the height of its corner");
-    if (lens.allow_overlap) list.push_back("that faces may cross" + none);
+        list.push_back("the film's aspect ratio: only the height of its corner is written");
+    if (lens.allow_overlap) list.push_back("the permission that faces may overlap" + cannot_express);
 }
 
 std::string PrescriptionWriter::title() const {
     return printable(lens_.title.empty() ? lens_.name : lens_.title);
 }
 
-double PrescriptionWriter::corner() const {
+double PrescriptionWriter::film_corner() const {
     return 0.5 * hypotenuse(lens_.film_width, lens_.film_height);
 }
 
@@ -60,8 +61,8 @@ double PrescriptionWriter::thickness(std::size_t surface) const {
 double PrescriptionWriter::entrance_pupil_diameter(const std::string& suffix) const {
     const double diameter = first_order(centred(lens_), lens_.wavelength_nm).entrance_pupil_diameter;
     if (!std::isfinite(diameter))
-        throw InputError("lens \"" + lens_.name + "\" has its entrance pupil at infinity, and no aperture that a " +
-                         suffix + " file states");
+        throw InputError("lens \"" + lens_.name + "\" has its entrance pupil at infinity, so that a " + suffix +
+                         " file cannot express its aperture");
     return diameter;
 }
 
@@ -72,11 +73,12 @@ const Glass& PrescriptionWriter::medium_behind(std::size_t surface) const {
     return air;
 }
 
-std::vector<PrescriptionWriter::ZoomRow> PrescriptionWriter::zoom_rows() const {
+std::vector<PrescriptionWriter::ZoomedQuantity> PrescriptionWriter::zoomed_quantities() const {
     const ZoomRange& zoom = lens_.zoom;
-    std::vector<ZoomRow> rows;
+    std::vector<ZoomedQuantity> rows;
     for (const int i : zoom.surfaces) rows.push_back({i + 1, {}});
-    for (const int i : {static_cast<int>(lens_.surfaces.size()), ZoomRow::kObject, ZoomRow::kEntrancePupil})
+    for (const int i :
+         {static_cast<int>(lens_.surfaces.size()), ZoomedQuantity::kObject, ZoomedQuantity::kEntrancePupil})
         rows.push_back({i, {}});
     for (int k = 0; k < static_cast<int>(zoom.positions.size()); ++k) {
         const LensSystem lens = k == zoom.current ? lens_ : at_zoom_position(lens_, k);

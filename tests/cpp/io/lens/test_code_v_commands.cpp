@@ -49,7 +49,7 @@ TEST_CASE("a private glass that cannot be read is refused where a surface has it
         CHECK(read(with_private_glass(line, "NBK7_SCHOTT"), "a.seq").lens == plain);
     }
     const Reading formula = read(with_private_glass("'X' HAR 1.5 0.1 0.2\n", "'X'"), "a.seq");
-    CHECK(formula.says("a.seq:14: surface 2: the private glass \"X\" is given by the formula \"HAR\""));
+    CHECK(formula.says("a.seq:14: surface 2: the private glass \"X\" is specified by the unknown formula \"HAR\""));
     CHECK(read(with_private_glass("'X' 1.5\n", "'X'"), "a.seq").says("has 1 indices for 3 wavelengths"));
     CHECK(read(with_private_glass("'X' HAR 1\n", "'X'"), "a.seq", with_glass("X=1.6,50")).error == "");
 }
@@ -68,7 +68,7 @@ TEST_CASE("commands that make another lens are refused by their names and lines"
     CHECK(last.says("a.seq:18: has the command DEL S1, which makes another lens"));
     CHECK(read(replaced(kCodeV, "GO\n", "S1..2 3 4\nGO\n"), "a.seq").says("a range of surfaces"));
     CHECK(read(replaced(kCodeV, "GO\n", "THI S1..2 4\nGO\n"), "a.seq").says("a range of surfaces"));
-    CHECK(read(replaced(kCodeV, "GO\n", "DIM I\nGO\n"), "a.seq").says("DIM has to stand in front"));
+    CHECK(read(replaced(kCodeV, "GO\n", "DIM I\nGO\n"), "a.seq").says("DIM must precede the surfaces"));
     // What changes one surface is done.
     const LensSystem thicker = read(replaced(kCodeV, "GO\n", "THI S2 7\nRDY S2 60\nGO\n"), "a.seq").lens;
     CHECK(thicker.surfaces.at(0).thickness == 7);

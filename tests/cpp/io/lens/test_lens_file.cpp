@@ -118,7 +118,7 @@ TEST_CASE("bad numbers of a surface are named with file, line and surface") {
                     "the last surface has no \"thickness_mm\"");
     check_complaint(with_line(9, ""), "probe.toml:5: surface 1", "\"clear_semi_diameter_mm\" is missing");
     check_complaint(with_line(6, "radius_of_curvature_mm = 0"), "probe.toml:6: surface 1",
-                    "a radius of curvature of 0 is no surface");
+                    "a radius of curvature must not be 0");
     check_complaint(with_line(6, "radius_of_curvature_mm = nan"), "probe.toml:6: surface 1", "must be a finite number");
     check_complaint(with_line(10, "inner_semi_diameter_mm = 8.0"), "probe.toml:5: surface 1",
                     "less than the clear semi-diameter");
@@ -153,7 +153,7 @@ TEST_CASE("bad materials are named with file, line and surface") {
                     "a mirror has no material");
     const std::string own = "[glass.OWN]\n";
     check_complaint(with_line(8, "material = \"OWN\"") + own + "n_d = 1.5\n", "probe.toml:20",
-                    "must be given together");
+                    "must be specified together");
     check_complaint(with_line(8, "material = \"OWN\"") + own + "n_d = 1.5\nV_d = 0.0\n", "probe.toml:22",
                     "must be positive");
     check_complaint(with_line(8, "material = \"OWN\"") + own + "index = 1.5\ncauchy = [1.5]\n", "probe.toml:20",

@@ -152,11 +152,11 @@ TEST_CASE("what there is no model of is named with line and surface, and left ou
     };
     refused(replaced(kZemax, "SURF 1\n", "SURF 1\n  TYPE GRID_SAG\n"), "a.zmx", "a.zmx:17: surface 1", "GRID_SAG");
     refused(replaced(kZemax, "SURF 6\n  CURV 0", "SURF 6\n  CONI 1\n  CURV 0.01"), "a.zmx", "surface 6",
-            "an image surface that is no sphere");
+            "an image surface that is not a sphere");
     refused(replaced(kCodeV, "  CIR 8.0", "  XOD 1.0"), "a.seq", "a.seq:11: surface 2", "XOD");
     refused(replaced(kCodeV, "  CIR 8.0", "  DIF GRT"), "a.seq", "surface 2", "DIF");
     refused(replaced(kCodeV, "SI 0.0", "SI 30.0 0.0\nASP\nA 1e-5\n!"), "a.seq", "surface 6",
-            "an image surface that is no sphere");
+            "an image surface that is not a sphere");
     CHECK(read(replaced(kCodeV, "  CIR 8.0", "  XOD 0.0"), "a.seq").error == "");
     CHECK(read(replaced(kZemax, "SURF 6\n  CURV 0", "SURF 6\n  CURV 0.01"), "a.zmx").lens.film_radius_of_curvature ==
           100);

@@ -98,7 +98,7 @@ TEST_CASE("glasses, mirrors and aspheres of an OSLO file") {
     // F4 is 1.616592 at Schott and 1.620047 at CDGM.
     const Reading shared = read(with("GLA BK7", "GLA F4"), "a.len");
     CHECK(index(shared.lens, kLineD_nm) == about(1.616592, 1e-6));
-    CHECK(shared.warns_of("taken for Schott's"));
+    CHECK(shared.warns_of("assumed to be Schott's"));
     const Reading named = read(with("GLA BK7", "GLA F4"), "a.len", with_glass("F4=cdgm:F4"));
     CHECK(index(named.lens, kLineD_nm) == about(1.620047, 1e-6));
     const Reading unknown = read(with("GLA BK7", "GLA XBK77"), "a.len");

@@ -83,7 +83,7 @@ TEST_CASE("an obscuration is a disc that blocks, and light passes everywhere bey
     const std::string on_stop = replaced(replaced(kZemax, "  STOP\n", "  STOP\n  OBSC 0 1 0\n"), "ENPD 10", "ENPD 8");
     const LensSystem stopped = read(on_stop, "a.zmx").lens;
     CHECK(stopped.stop().inner_semi_diameter == 1);
-    CHECK(read(cassegrain("  OBSC 0 300 0\n"), "a.zmx").says("a.zmx:11: surface 1: its obscuration is larger"));
+    CHECK(read(cassegrain("  OBSC 0 300 0\n"), "a.zmx").says("a.zmx:11: surface 1: its obscuration blocks all light"));
 }
 
 TEST_CASE("a rim that is smaller than the stop's beam counts in the T-stop") {

@@ -1,4 +1,4 @@
-#include "lens_words.hpp"
+#include "lens_file_options.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -12,7 +12,7 @@ namespace realcam::app {
 void add_lens_path_option(CLI::App& command, std::vector<std::string>& folders) {
     command
         .add_option("--lens-path", folders,
-                    "A folder whose lens files are known by their names; may be repeated [REALCAM_LENS_PATH]")
+                    "Folder whose lens files can be given by their names; may be repeated [REALCAM_LENS_PATH]")
         ->type_name("DIR")
         ->allow_extra_args(false);
 }
@@ -24,29 +24,30 @@ void set_lens_path(const std::vector<std::string>& folders) {
         if (!std::filesystem::is_directory(folder)) throw InputError("--lens-path: " + folder + " is no folder");
         path += folder + ':';
     }
-    if (const char* before = std::getenv("REALCAM_LENS_PATH")) path += before;
+    if (const char* inherited = std::getenv("REALCAM_LENS_PATH")) path += inherited;
     setenv("REALCAM_LENS_PATH", path.c_str(), 1);
 }
 
-void add_lens_options(CLI::App& command, LensWords& words) {
+void add_lens_options(CLI::App& command, LensFileOptions& values) {
     command
-        .add_option("--glass", words.glasses,
-                    "A glass that the lens's file names and no catalogue has, or several: by n_d and V_d, or as "
+        .add_option("--glass", values.glasses,
+                    "Glass that the lens file names and no catalogue has: its n_d and V_d, or another glass, as in "
                     "NAME=schott:F4; may be repeated")
         ->type_name("NAME=N,V")
         ->allow_extra_args(false);
     command
-        .add_option("--glass-catalogue", words.catalogues,
-                    "A catalogue of glasses (.agf) for those that the lens's file names; may be repeated")
+        .add_option("--glass-catalogue", values.catalogues,
+                    "Glass catalogue (.agf) in which the glasses of the lens file are looked up; may be repeated")
         ->type_name("FILE")
         ->allow_extra_args(false);
-    add_lens_path_option(command, words.folders);
-    command.add_flag("--force", words.force,
-                     "Leave out what the lens's file has that there is no model of, and name it");
+    add_lens_path_option(command, values.folders);
+    command.add_flag("--force", values.force,
+                     "Read a lens file with unsupported features: leave them out, with warnings");
     command
         .add_option(
-            "--pbrt-thickness", words.pbrt_thickness,
-            "Where a thickness in a .dat file stands: after or before the surface of its row [by the first row]")
+            "--pbrt-thickness", values.pbrt_thickness,
+            "Whether a thickness in a .dat file is that after or before the surface of its row [detected from the "
+            "first row]")
         ->type_name("WHERE");
 }
 
@@ -56,9 +57,9 @@ std::string advice_on(const io::LensReadError& error) {
     return "; --glass " + error.glass + '=' + (error.candidate.empty() ? "n_d,V_d" : error.candidate) + " names it";
 }
 
-io::LensReadOptions lens_options_of(const LensWords& words) {
+io::LensReadOptions lens_options_of(const LensFileOptions& values) {
     io::LensReadOptions options;
-    for (const std::string& text : words.glasses) {
+    for (const std::string& text : values.glasses) {
         const auto [name, glass] = [&] {
             try {
                 return io::named_glass(text);
@@ -69,10 +70,10 @@ io::LensReadOptions lens_options_of(const LensWords& words) {
         if (!options.glasses.emplace(name, glass).second)
             throw InputError("--glass: the glass \"" + name + "\" is given twice");
     }
-    set_lens_path(words.folders);
-    for (const std::string& file : words.catalogues) io::read_glass_catalogue(file, options.catalogue);
-    options.force = words.force;
-    if (!words.pbrt_thickness.empty()) options.pbrt_thickness = io::pbrt_thickness_named(words.pbrt_thickness);
+    set_lens_path(values.folders);
+    for (const std::string& file : values.catalogues) io::read_glass_catalogue(file, options.catalogue);
+    options.force = values.force;
+    if (!values.pbrt_thickness.empty()) options.pbrt_thickness = io::pbrt_thickness_named(values.pbrt_thickness);
     options.warn = [](const std::string& message) {
         std::fprintf(stderr, "realcam: warning: %s\n", io::one_line(message).c_str());
     };
