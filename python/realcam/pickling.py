@@ -17,9 +17,10 @@ FORMAT = _core._STATE_FORMAT
 
 
 def restored(kind: str, state_format: int, version: str, state: Any) -> Any:
-    """Restores a pickled object.
+    """Restores a pickled object of the extension.
 
-    Raises InputError if the state is damaged, or if it is in the format of another version of realcam.
+    kind: name of its class. state_format, version: of the realcam that pickled it. Raises InputError if the state is
+    damaged, or if it is in the format of another version of realcam.
     """
     made_by = version if isinstance(version, str) and len(version) <= 20 and version.isprintable() else "?"
     type_ = getattr(_core, kind, None) if isinstance(kind, str) else None
@@ -92,7 +93,7 @@ def from_description(description: Any, buffer: np.ndarray, kind: str) -> Any:
 
 
 def set_checked_state(value: Any, state: Any, check: Callable[[Any], object]) -> None:
-    """Implements `__setstate__` of a frozen dataclass: validates the fields by __init__ and `check`.
+    """Implements `__setstate__` of a frozen dataclass: validates the fields by __init__ and by check(object).
 
     Raises InputError. State that is not a field, such as a cached property, is ignored.
     """

@@ -51,8 +51,8 @@ def _options(
 
 
 def run() -> None:
-    """Runs the command line of this process and exits: with 2 after an error, which is printed on stderr in one line, and
-    with 130 after Ctrl-C."""
+    """Runs the command line of this process and exits: with 2 after an error, which is printed on stderr in one line,
+    and with 130 after Ctrl-C."""
     warnings.showwarning = _show_warning
     warnings.simplefilter("always", UserWarning)
     command = typer.main.get_command(app)

@@ -10,7 +10,7 @@ from typing import Any, get_type_hints
 
 
 def grouped(command: Callable[..., None]) -> Callable[..., None]:
-    """Returns the command's function for typer: a parameter that is a dataclass is replaced by the dataclass's fields."""
+    """Returns the command's function for typer, with the fields of a dataclass in place of a parameter of its type."""
     parameters: list[inspect.Parameter] = []
     groups: dict[str, Any] = {}
     for name, parameter in inspect.signature(command, eval_str=True).parameters.items():

@@ -61,7 +61,7 @@ def photo_rows(figures: PhotographicFigures) -> Rows:
 
 
 def summary_rows(summary: LensSummary) -> Rows:
-    """Returns the rows, (name, value), of a lens in the table that `lens compare` prints; all lenses have the same names."""
+    """Returns the rows, (name, value), of a lens in the table of `lens compare`; all lenses have the same names."""
     f, dof = summary.figures, summary.figures.depth_of_field
     rows: Rows = [
         ("focus", _metres(f.focus_distance_m)),

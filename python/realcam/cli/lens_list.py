@@ -20,8 +20,8 @@ from . import lens_options, options
 class ListedLens:
     """Row of the list.
 
-    focal_lengths_mm: the shortest and the longest, which differ if the lens zooms. year: None if unknown. file: None for
-    a bundled lens.
+    focal_lengths_mm: the shortest and the longest, which differ if the lens zooms. year: None if unknown. file: None
+    for a bundled lens.
     """
 
     name: str

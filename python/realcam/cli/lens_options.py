@@ -174,8 +174,8 @@ def add_to_lens_path(folders: Sequence[str] | None) -> None:
 
 
 def lens_files_on_path() -> dict[str, Path]:
-    """Returns the lens files in the folders of REALCAM_LENS_PATH by name; of several with a name, the one that Lens.load
-    finds."""
+    """Returns the lens files in the folders of REALCAM_LENS_PATH by name; of several with a name, the one that
+    Lens.load finds."""
     files: dict[str, Path] = {}
     for folder in filter(None, os.environ.get("REALCAM_LENS_PATH", "").split(":")):
         for path in sorted(Path(folder).iterdir()) if Path(folder).is_dir() else ():
