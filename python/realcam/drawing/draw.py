@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from ..section.cut import Points
 from ..section.outlines import Element, Face
 from ..section.section import CrossSection
-from .notes import draw_overlaps, draw_focus_group, draw_marks
+from .notes import draw_focus_group, draw_marks, draw_overlaps
 from .style import Style, ray_colour
 from .themes import Theme
 
