@@ -44,7 +44,7 @@ def _gathered_along(axis: int, picture: Picture, diameters: Picture, depth: Pict
 
 
 def _overlap(length: int, offset: int, axis: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
-    """Returns the index of all pixels that have a neighbour at `offset` along the axis, and that of these neighbours."""
+    """Returns the index of all pixels with a neighbour at `offset` along the axis, and that of these neighbours."""
     pixels = slice(max(0, -offset), length - max(0, offset))
     neighbours = slice(max(0, offset), length - max(0, -offset))
     whole = slice(None)

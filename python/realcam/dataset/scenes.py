@@ -115,7 +115,7 @@ def random_scene(recipe: Recipe, rng: np.random.Generator) -> RandomScene:
 
 
 def _upright(position: Array, size: float, angle: float) -> Array:
-    """Returns the (4, 4) matrix that scales, rotates by an angle in radians about the y axis, and moves to a position."""
+    """Returns the (4, 4) matrix that scales, rotates by an angle in radians about y, and moves to a position."""
     c, s = size * np.cos(angle), size * np.sin(angle)
     return np.array([[c, 0, s, position[0]], [0, size, 0, position[1]], [-s, 0, c, position[2]], [0, 0, 0, 1]])
 
@@ -166,7 +166,7 @@ def _view_from(distance: float, rng: np.random.Generator) -> tuple[Array, Array]
 
 
 def _is_in_a_body(seen: RandomScene, position: Array) -> bool:
-    """Returns True if a point lies within 0.05 m of an object's bounding sphere, that of a cube of the object's size."""
+    """Returns True if a point lies within 0.05 m of an object's bounding sphere, that of a cube of its size."""
     sizes = 2 * seen.centres_m[:, 1]  # the objects stand on the floor
     return bool((np.linalg.norm(seen.centres_m - position, axis=1) < 0.87 * sizes + 0.05).any())
 
