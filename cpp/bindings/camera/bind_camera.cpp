@@ -196,12 +196,11 @@ shutter_opens_s: time in the scene at which the exposure begins. readout_time_s:
 motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in increasing order of time, instead of
   position, look_at and up, which then become those at time 0. Between keys the camera moves uniformly.
 Raises InputError.)")
-        .def(
-            "replace", &changed_camera, py::kw_only(), "lens"_a = py::none(), "film"_a = py::none(),
-            "position"_a = py::none(), "look_at"_a = py::none(), "up"_a = py::none(), "exposure_time_s"_a = py::none(),
-            "iso"_a = py::none(), "model"_a = py::none(), "shutter_opens_s"_a = py::none(),
-            "readout_time_s"_a = py::none(), "motion"_a = py::none(),
-            R"(Returns the camera with some properties changed. Arguments as for Camera(); None: unchanged. The film
+        .def("replace", &changed_camera, py::kw_only(), "lens"_a = py::none(), "film"_a = py::none(),
+             "position"_a = py::none(), "look_at"_a = py::none(), "up"_a = py::none(), "exposure_time_s"_a = py::none(),
+             "iso"_a = py::none(), "model"_a = py::none(), "shutter_opens_s"_a = py::none(),
+             "readout_time_s"_a = py::none(), "motion"_a = py::none(),
+             R"(Returns the camera with some properties changed. Arguments as for Camera(); None: unchanged. The film
 stays if the lens changes (see Film.for_lens). A new position, look_at or up removes the motion. Raises InputError.)")
         .def_property_readonly(
             "field_of_view_deg", &field_of_view_deg,

@@ -30,7 +30,8 @@ namespace {
 
 using Array = py::array_t<double>;
 
-constexpr const char* kKindNames[] = {"unknown", "bare", "layers", "metal", "reflectance"};  ///< names in the order of CoatingKind
+/// Names in the order of CoatingKind.
+constexpr const char* kKindNames[] = {"unknown", "bare", "layers", "metal", "reflectance"};
 
 /// Converts a sequence of (wavelength_nm, n, k); returns std::nullopt for other or empty sequences.
 std::optional<CoatingMaterial> points_from(const py::object& material) {
