@@ -55,7 +55,7 @@ _read_scene = Scene.load
 
 
 def _load(*arguments: Any, **named: Any) -> Scene:
-    """Scene.load that also accepts the name of a bundled scene; it replaces the extension's."""
+    """Loads a scene as Scene.load does, also by the name of a bundled scene, and replaces it."""
     if arguments:
         arguments = (bundled_file(arguments[0], SCENE_SUFFIXES), *arguments[1:])
     elif "path" in named:

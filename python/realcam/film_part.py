@@ -63,7 +63,7 @@ class FilmPart:
         set_checked_state(self, state, lambda made: made.packed())
 
     def __eq__(self, other: object) -> bool:
-        """True if regions, samples and sums are equal; stats are not compared."""
+        """Returns True if regions, samples and sums are equal; stats are not compared."""
         if not isinstance(other, FilmPart):
             return NotImplemented
         about, others = self._about(), other._about()

@@ -73,7 +73,7 @@ class Image:
         set_checked_state(self, state, type(self).metadata)
 
     def __eq__(self, other: object) -> bool:
-        """True if pixels, layers, camera and metadata are equal; stats are not compared."""
+        """Returns True if pixels, layers, camera and metadata are equal; stats are not compared."""
         if not isinstance(other, Image):
             return NotImplemented
         mine, others = self._arrays(), other._arrays()

@@ -68,7 +68,10 @@ def described(value: Any, buffers: list[np.ndarray]) -> Any:
 
 
 def from_description(description: Any, buffer: np.ndarray, kind: str) -> Any:
-    """Inverse of described(), for a value of this kind. buffer: the concatenated buffers, uint8. Raises InputError."""
+    """Returns the value that described() has described; this is its inverse.
+
+    kind: expected kind of the value. buffer: the concatenated buffers, uint8. Raises InputError.
+    """
 
     def state_of(item: Any) -> Any:
         if isinstance(item, list):
@@ -113,6 +116,6 @@ def set_checked_state(value: Any, state: Any, check: Callable[[Any], object]) ->
 
 
 def same_arrays(one: Any, other: Any) -> bool:
-    """True if two arrays have the same dtype, shape and values, with NaN equal to NaN."""
+    """Returns True if two arrays have the same dtype, shape and values, with NaN equal to NaN."""
     a, b = np.asarray(one), np.asarray(other)
     return a.dtype == b.dtype and a.shape == b.shape and bool(np.array_equal(a, b, equal_nan=a.dtype.kind in "fc"))

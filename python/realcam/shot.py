@@ -20,7 +20,7 @@ from .settings import setting
 
 
 def is_shot_file(path: str | os.PathLike[str]) -> bool:
-    """True for a shot file, false for a scene file: the rule of `realcam render`."""
+    """Returns True for a shot file and False for a scene file, by the rule of `realcam render`."""
     return Path(os.fsdecode(path)).suffix == ".toml"
 
 

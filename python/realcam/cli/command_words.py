@@ -261,7 +261,7 @@ def _check_arguments(arguments: Sequence[str], outputs: Sequence[str], grammar: 
 
 
 def _is_read(word: str, kind: str) -> bool:
-    """True for a file, or a bundled name, that is valid for an argument with the placeholder `kind`."""
+    """Returns True for a file, or a bundled name, that is valid for an argument with the placeholder `kind`."""
     names = {"SCENE": shot_names, "LENS": lens_names}.get(kind, list)()
     return _suffix(word) in _READ.get(kind, ()) or word in names
 

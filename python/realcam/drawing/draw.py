@@ -131,7 +131,7 @@ def _draw_ghost(section: CrossSection, ghost: CrossSection, axes: Axes, theme: T
 
 
 def _has_moved(element: Element, other: Element | None, shift: float) -> bool:
-    """True if an element shifted along z differs from the other one, or there is no other one."""
+    """Returns True if an element shifted along z differs from the other one, or there is no other one."""
     if other is None:
         return True
     return any(

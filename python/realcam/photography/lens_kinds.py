@@ -29,7 +29,7 @@ def kind_of(lens: Lens, angle_deg: float) -> str:
 
 
 def is_anamorphic(lens: Lens) -> bool:
-    """True if the focal lengths in the two principal meridians differ by more than 5%."""
+    """Returns True if the focal lengths in the two principal meridians differ by more than 5%."""
     if lens.is_rotational:
         return False
     one, other = lens.meridians()

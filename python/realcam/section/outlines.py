@@ -61,7 +61,7 @@ class Overlap(ShortText):
 
 
 def is_glass(lens: Lens, surface: int) -> bool:
-    """True if the medium behind a refracting surface is not air."""
+    """Returns True if the medium behind a refracting surface is not air."""
     return lens.surfaces[surface].material.index(lens.wavelength_nm) != 1
 
 
