@@ -178,11 +178,11 @@ Sensor with_changes(Sensor sensor, const std::optional<std::string>& name, std::
                     std::optional<double> prnu_percent, std::optional<double> hot_pixel_share,
                     std::optional<double> hot_pixel_current_e_per_s) {
     std::string changed_names;
-    const auto list_if = [&](bool has_changed, const char* name) {
-        if (has_changed) changed_names += std::string(changed_names.empty() ? "" : ", ") + name;
+    const auto list_if = [&](bool has_changed, const char* key) {
+        if (has_changed) changed_names += std::string(changed_names.empty() ? "" : ", ") + key;
     };
-    const auto set = [&](const char* name, auto& value, const auto& new_value) {
-        list_if(new_value && !(value == *new_value), name);
+    const auto set = [&](const char* key, auto& value, const auto& new_value) {
+        list_if(new_value && !(value == *new_value), key);
         if (new_value) value = *new_value;
     };
     const Sensor before = sensor;
