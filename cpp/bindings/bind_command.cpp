@@ -1,3 +1,5 @@
+// The command line in C++, run from Python's command `realcam`.
+
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
@@ -40,15 +42,16 @@ private:
     }
 };
 
-int run_command(const Typed<"list[bytes]", py::list>& arguments) {
-    auto words = arguments.cast<std::vector<std::string>>();
-    words.insert(words.begin(), "realcam");
+/// Runs a command and returns its exit status. `words`: arguments behind "realcam" on the command line.
+int run_command(const Typed<"list[bytes]", py::list>& words) {
+    auto arguments = words.cast<std::vector<std::string>>();
+    arguments.insert(arguments.begin(), "realcam");
     std::vector<char*> pointers;
-    for (std::string& word : words) pointers.push_back(word.data());
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);
     const FilmWriterInPython film_writer;
     const Unlocked unlocked;
-    return app::run_command_line(static_cast<int>(words.size()), pointers.data(), &film_writer);
+    return app::run_command_line(static_cast<int>(arguments.size()), pointers.data(), &film_writer);
 }
 
 Typed<"list[tuple[list[str], str, list[tuple[list[str], str, str]]]]", py::list> listed_commands() {
@@ -64,10 +67,11 @@ Typed<"list[tuple[list[str], str, list[tuple[list[str], str, str]]]]", py::list>
 
 }  // namespace
 
-// Words are bytes objects, from os.fsencode.
 void bind_command(py::module_& m) {
-    m.def("_run_command", &run_command, "words"_a);
-    m.def("_listed_commands", &listed_commands);
+    m.def("_run_command", &run_command, "words"_a,
+          "Internal. Runs a command and returns its exit status. words: arguments behind \"realcam\", by os.fsencode.");
+    m.def("_listed_commands", &listed_commands,
+          "Internal. Returns all commands in C++ as (words, description, options); an option is (names, type, help).");
 }
 
 }  // namespace realcam::bindings

@@ -1,16 +1,16 @@
-#include <optional>
-#include "../error.hpp"
-#include "../io/lens/lens_error.hpp"
-
-#include "../image_io/unfinished_file.hpp"
-#include "../io/files/readable_file.hpp"
-#include "../io/text/printable.hpp"
-#include "../plan/plan.hpp"
+// Python's exception classes, and the translation of C++ exceptions into them.
 
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "../error.hpp"
+#include "../image_io/unfinished_file.hpp"
+#include "../io/files/readable_file.hpp"
+#include "../io/lens/lens_error.hpp"
+#include "../io/text/printable.hpp"
+#include "../plan/plan.hpp"
 #include "bindings.hpp"
 
 namespace realcam::bindings {
@@ -19,7 +19,8 @@ using namespace py::literals;
 
 namespace {
 
-// Never destroyed: Python may translate an error while the module is torn down.
+/// Returns the Python class for a C++ exception or tag. Never destroyed, because Python may translate an error while
+/// the module is torn down.
 template <class Tag>
 py::object& type_of() {
     static auto* type = new py::object;
@@ -29,6 +30,7 @@ py::object& type_of() {
 /// Tag of an exception that only Python code raises.
 struct ArgumentError;
 
+/// Creates the exception class realcam.`name` and adds it to the module. `base`: its base class, or a tuple of them.
 template <class E>
 void define(py::module_& m, const char* name, const py::object& base, const char* doc) {
     const std::string full = std::string("realcam.") + name;
@@ -47,23 +49,23 @@ void raise(const LensFileError& error) {
     instance.attr("line") = error.line;
     instance.attr("surface") = error.surface;
     const auto* read_error = dynamic_cast<const io::LensReadError*>(&error);
-    const io::LensReadError nothing("");
-    const io::LensReadError& remedy = read_error ? *read_error : nothing;
+    const io::LensReadError no_remedy("");
+    const io::LensReadError& remedy = read_error ? *read_error : no_remedy;
     instance.attr("glass") = text_from(remedy.glass);
     instance.attr("candidate") = text_from(remedy.candidate);
     instance.attr("can_be_forced") = remedy.can_be_forced;
     // Python prints notes below a traceback. They are not part of the message, which the browser shows as well.
     py::list notes;
-    if (remedy.can_be_forced) notes.append("Lens.load(..., force=True) reads it all the same");
+    if (remedy.can_be_forced) notes.append("Lens.load(..., force=True) reads the file without that feature");
     if (!remedy.glass.empty())
         notes.append(text_from("Lens.load(..., glass={\"" + remedy.glass +
                                "\": " + (remedy.candidate.empty() ? "(n_d, V_d)" : '"' + remedy.candidate + '"') +
-                               "}) names it"));
+                               "}) defines that glass"));
     if (!notes.empty()) instance.attr("__notes__") = notes;
     PyErr_SetObject(type_of<LensFileError>().ptr(), instance.ptr());
 }
 
-/// Starts or ends the recording of the input files of a command that is written in Python.
+/// Starts or ends recording which files a command written in Python reads, for _check_no_input.
 void record_inputs(bool is_on) {
     static std::optional<io::InputRecording> recording;
     if (!is_on)
@@ -75,32 +77,40 @@ void record_inputs(bool is_on) {
 }  // namespace
 
 void bind_errors(py::module_& m) {
-    m.def("_record_inputs", &record_inputs, "is_on"_a);
-    m.def("_check_no_input", [](const py::bytes& output) { image_io::check_no_input(output); }, "output"_a);
+    m.def("_record_inputs", &record_inputs, "is_on"_a,
+          "Internal. Starts (True) or ends (False) recording which files are read.");
+    m.def(
+        "_check_no_input", [](const py::bytes& output) { image_io::check_no_input(output); }, "output"_a,
+        "Internal. Raises an error if the output file is one of the recorded input files.");
     m.def(
         "one_line", [](const std::string& message) { return text_from(io::one_line(message)); }, "message"_a,
-        "A message as one line: without control characters, and what is too long for a message without its middle.");
+        "Returns a message as one line: control characters are removed, and the middle of a message that is too long "
+        "is left out.");
     define<Error>(m, "RealcamError", py::reinterpret_borrow<py::object>(PyExc_Exception),
-                  "Base of all errors of realcam. The message is one line: what, where, and what is expected.");
+                  "Base class of all errors of realcam. The message is one line: what is wrong, where, and what is "
+                  "expected.");
     const py::object base = type_of<Error>();
     const py::object value_error = py::make_tuple(base, py::reinterpret_borrow<py::object>(PyExc_ValueError));
-    define<InputError>(m, "InputError", value_error, "A value that makes no sense. Also a ValueError.");
+    define<InputError>(m, "InputError", value_error, "Raised for an invalid value. Also a ValueError.");
     const py::object type_error =
         py::make_tuple(type_of<InputError>(), py::reinterpret_borrow<py::object>(PyExc_TypeError));
-    define<ArgumentError>(m, "ArgumentError", type_error,
-                          "An argument of the wrong type, missing, or not known. Also a TypeError.");
+    define<ArgumentError>(
+        m, "ArgumentError", type_error,
+        "Raised for an argument that has the wrong type, is missing or is unknown. Also a TypeError.");
     define<NothingToPlan>(
         m, "NothingToPlan", type_of<InputError>(),
-        "A shot in which there is nothing to decide upon: the camera sees neither an object nor light.");
+        "Raised by the planner for a shot that it cannot plan, because the camera sees neither an object nor light.");
     define<LensFileError>(
         m, "LensFileError", base,
-        "A lens that cannot be read or built. Attributes: file (str, empty where there is none), line and "
-        "surface (int, from 1; 0 where they do not apply); glass (str), the name of a glass that is not known, or "
-        "several, and candidate, one of these; can_be_forced (bool), whether force=True reads the file.");
-    define<SceneFileError>(m, "SceneFileError", base, "A scene that cannot be read, or that holds no geometry.");
-    define<ImageFileError>(m, "ImageFileError", base, "A picture that cannot be read or written.");
-    define<DeviceError>(m, "DeviceError", base, "A device, or its library, that fails.");
-    define<Cancelled>(m, "Cancelled", base, "A render that its progress callback stopped.");
+        "Raised for a lens that cannot be read or built. Attributes: file (str, empty if there is none), line and "
+        "surface (int, from 1; 0 if they do not apply); glass (str), the name of an unknown or ambiguous glass, "
+        "else empty; candidate (str), one catalogue glass of that name, or empty; can_be_forced (bool), True if "
+        "force=True reads the file.");
+    define<SceneFileError>(m, "SceneFileError", base,
+                           "Raised for a scene that cannot be read, or that contains no geometry.");
+    define<ImageFileError>(m, "ImageFileError", base, "Raised for an image file that cannot be read or written.");
+    define<DeviceError>(m, "DeviceError", base, "Raised if a device, or its library, fails or is missing.");
+    define<Cancelled>(m, "Cancelled", base, "Raised if a progress callback stopped the work.");
     py::register_exception_translator([](std::exception_ptr pointer) {
         try {
             if (pointer) std::rethrow_exception(pointer);

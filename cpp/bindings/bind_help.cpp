@@ -19,8 +19,11 @@ void bind_help(py::module_& m) {
             for (const auto& [title, rows] : sections) page.sections.push_back({title, rows});
             return io::text_of(page);
         },
-        "usage"_a, "description"_a, "sections"_a, "examples"_a);
-    m.def("_did_you_mean", &io::did_you_mean, "name"_a, "candidates"_a);
+        "usage"_a, "description"_a, "sections"_a, "examples"_a,
+        "Internal. Returns a command's help page. sections: list of (title, list of (option or command, help text)).");
+    m.def("_did_you_mean", &io::did_you_mean, "name"_a, "candidates"_a,
+          "Internal. Returns the end of an error message that suggests the candidates most similar to a name; empty if "
+          "no candidate is similar.");
 }
 
 }  // namespace realcam::bindings

@@ -1,3 +1,5 @@
+// Reads TOML files for the Python part of the package, with the parser of the C++ core.
+
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -15,7 +17,7 @@ namespace {
     throw InputError(file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + message);
 }
 
-/// Calls f(key, node) in the order of the file, which the parser does not preserve.
+/// Calls f(key, node) for all entries of a table in the order of the file, which the parser does not preserve.
 template <class F>
 void for_each_in_order(const toml::table& table, F&& f) {
     std::vector<std::pair<const toml::key*, const toml::node*>> entries;
@@ -29,6 +31,7 @@ py::str text_of(const toml::key& key) {
     return {std::string(key.str())};
 }
 
+/// Converts a node to a Python value; tables become dicts and arrays become lists.
 py::object value_of(const toml::node& node) {
     if (const auto* table = node.as_table()) {
         py::dict values;
@@ -48,6 +51,7 @@ py::object value_of(const toml::node& node) {
     return py::none();  // dates, which realcam's files do not use
 }
 
+/// Returns (values, lines): the table, and the line of each key at the top level.
 Typed<"tuple[dict[str, Any], dict[str, int]]", py::tuple> read_toml(const std::string& text, const std::string& file) {
     const toml::table table = io::parse_toml(text, file, raise_toml_error);
     py::dict lines;
@@ -58,7 +62,10 @@ Typed<"tuple[dict[str, Any], dict[str, int]]", py::tuple> read_toml(const std::s
 }  // namespace
 
 void bind_toml(py::module_& m) {
-    m.def("_read_toml", &read_toml, "text"_a, "file"_a);
+    m.def(
+        "_read_toml", &read_toml, "text"_a, "file"_a,
+        "Internal. Parses TOML. Returns the values, and the line number of each top-level key. file: name of the file, "
+        "for messages. Raises InputError with the line.");
 }
 
 }  // namespace realcam::bindings

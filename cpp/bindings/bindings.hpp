@@ -21,7 +21,8 @@ namespace realcam::bindings {
 
 namespace py = pybind11;
 
-// One function for each file of this folder.
+// Conversions that all bindings share, and the functions that add the bindings to the module, by subject.
+
 void bind_errors(py::module_& m);
 void bind_coating(py::module_& m);
 void bind_glass(py::module_& m);
@@ -68,24 +69,24 @@ void bind_command(py::module_& m);
 /// Issues a UserWarning on the line of the user's call. May be called with or without the GIL.
 void warn(const std::string& text);
 
-/// Converts "film" or "linear". Throws InputError.
+/// Returns the tone curve named "film" or "linear". Throws InputError for any other name.
 ToneCurve tone_curve_from(const std::string& name);
 
-/// Throws InputError if the number does not fit into 32 bits.
+/// Returns the seed as 32 bits. Throws InputError if it does not fit; `what`: name of the argument, for the message.
 std::uint32_t seed_from(std::int64_t seed, const char* what = "seed");
 
-/// Converts a number of bounces; std::nullopt for "auto".
-inline std::optional<int> bounces_from(py::handle word) {
-    const bool is_automatic = py::isinstance<py::str>(word) && word.cast<std::string>() == "auto";
-    return is_automatic ? std::nullopt : std::optional(word.cast<int>());
+/// Converts the maximum number of bounces of a path, an int; returns std::nullopt for "auto".
+inline std::optional<int> bounces_from(py::handle bounces) {
+    const bool is_automatic = py::isinstance<py::str>(bounces) && bounces.cast<std::string>() == "auto";
+    return is_automatic ? std::nullopt : std::optional(bounces.cast<int>());
 }
 
-/// Returns a progress function that handles signals (Ctrl-C), then calls the caller's function (None: no call). It is
-/// called without the GIL. The callback must outlive the result.
+/// Returns a progress function that handles signals (Ctrl-C), then calls `callback` with the finished fraction, 0 to 1
+/// (None: no call). It must be called without the GIL. The callback must outlive the result.
 Progress progress_of(const py::object& callback);
 
-/// KeepGoing function: returns true, or raises the exception of a signal handler, typically KeyboardInterrupt. Called
-/// with or without the GIL, on the thread that Python called.
+/// KeepGoing function: returns true, or throws the exception of a signal handler, typically KeyboardInterrupt. It may
+/// be called with or without the GIL, on the thread that Python called.
 bool heed_signals();
 
 /// Converts a path, a str or any object with __fspath__, to the bytes of the file system. Throws InputError for a null
@@ -96,28 +97,28 @@ inline std::string path_from(const py::object& path) {
     return bytes;
 }
 
-/// Converts a text of the core, which may contain file names that are not valid UTF-8, in the way of os.fsdecode.
+/// Converts a text of the core to a str, as os.fsdecode does: it may contain file names that are not valid UTF-8.
 inline py::str text_from(const std::string& text) {
     return py::reinterpret_steal<py::str>(
         PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<py::ssize_t>(text.size())));
 }
 
-/// Converts a medium: an index, (n_d, V_d), the name of a catalogue glass, or a Glass; None is air.
+/// Converts a medium: an index, (n_d, V_d), the name of a catalogue glass, or a Glass; None is air. Throws InputError.
 Glass glass_from(const py::object& material);
-/// Converts the name of a known coating or a Coating. Throws InputError.
+/// Converts the name of a known coating (Coating.named) or a Coating. Throws InputError for anything else.
 Coating coating_from(const py::object& coating);
 /// Describes a medium, for __repr__.
 std::string glass_text(const Glass& glass);
 
-/// Returns the wavelength, or the design wavelength for std::nullopt. Throws InputError outside the limits of
-/// Lens.trace.
+/// Returns the wavelength in nm, or the lens's design wavelength for std::nullopt. Throws InputError below 100 or above
+/// 20000 nm.
 double wavelength_or_design(const LensSystem& lens, std::optional<double> nm);
 
-/// Film point: (x, y), mm from the film's centre; std::nullopt: the field is given by its angle.
+/// Film point: (x, y), mm from the film's centre; std::nullopt: the field is specified by its angle.
 using FilmPoint = std::optional<std::pair<double, double>>;
 
-/// Converts a field point; without a distance it is in the plane of focus. Throws InputError if both an angle and a
-/// film point are given.
+/// Converts a field point; without an object distance it lies in the plane in focus. Throws InputError if both an angle
+/// other than 0 and a film point are specified.
 FieldPoint field_from(double field_deg, std::optional<double> object_distance_m, const FilmPoint& film_mm = {});
 
 }  // namespace realcam::bindings

@@ -1,16 +1,19 @@
+// Entry point of the extension module realcam._core.
+
 #include "bindings.hpp"
 #include "values/value_state.hpp"
 
 namespace realcam::bindings {
 namespace {
 
-/// Makes Class.__new__ raise an error, because it would create an object without a value. Python itself calls the
-/// type's slot, which is unchanged: only the dict entry is replaced.
+/// Makes Class.__new__ raise TypeError, because it would create an object without a C++ value. Only the dict entry is
+/// replaced: calling the class uses the type's slot, which is unchanged.
 void refuse_new(const py::object& type) {
     const std::string name = type.attr("__name__").cast<std::string>();
     const py::cpp_function refuse(
         [name](const py::args&, const py::kwargs&) {
-            throw py::type_error(name + ".__new__ makes no " + name + "; call the class, or what its help names");
+            throw py::type_error(name + ".__new__ makes no " + name +
+                                 "; call the class, or a function named in its help");
         },
         py::name("__new__"), py::scope(type));
     PyObject* entries = reinterpret_cast<PyTypeObject*>(type.ptr())->tp_dict;

@@ -16,8 +16,8 @@ struct Annotation {
     constexpr Annotation(const char (&literal)[size]) { std::copy_n(literal, size, text); }
 };
 
-/// Python object that signatures show with the given annotation, which pybind11 does not check: for values that the
-/// function converts itself. `Base` is checked.
+/// Python object that is shown in signatures as `annotation`. pybind11 checks its type `Base` but not the annotation:
+/// for values that the function converts itself.
 template <Annotation annotation, class Base = pybind11::object>
 struct Typed : Base {
     Typed() = default;
@@ -33,23 +33,23 @@ private:
     static constexpr pybind11::object::stolen_t stolen{};
 };
 
-// Names are those of the stub (tools/make_stub.py).
+// Annotations may use the type aliases of the stub (tools/make_stub.py), such as _Picture.
 
 using PathLike = Typed<"str | os.PathLike[str]">;
-/// Medium of a lens, see glass_from.
+/// Medium of a lens, see glass_from in bindings.hpp.
 using MediumLike = Typed<"float | tuple[float, float] | str | Glass | None">;
-/// Material of a coating's layer or metal, see coating_material_from.
+/// Material of a coating's layer or metal, see coating_material_from in lens/bind_coating.cpp.
 using CoatingMaterialLike = Typed<"complex | tuple[float, float] | Sequence[tuple[float, float, float]] | str | Glass">;
-/// Coating of a surface, see coating_from.
+/// Coating of a surface, see coating_from in bindings.hpp.
 using CoatingLike = Typed<"str | Coating">;
-/// Progress function, see progress_of.
+/// Progress function, see progress_of in bindings.hpp.
 using ProgressFunction = Typed<"Callable[[float], bool | None] | None">;
 using DTypeLike = Typed<"DTypeLike">;
 using ArrayLike = Typed<"ArrayLike">;
 using OptionalArrayLike = Typed<"ArrayLike | None">;
-/// Form or aperture of a surface, see change_form.
+/// Terms of a surface's sag, its aperture, or an obscuration, as a dict; see change_form in lens/surface_changes.hpp.
 using FormDict = Typed<"dict[str, Any]", pybind11::dict>;
-/// Fields of a Python Image by name, see picture_from.
+/// Attributes of a Python Image by name, see picture_from in pictures/picture.hpp.
 using PictureFields = Typed<"_Picture", pybind11::dict>;
 
 }  // namespace realcam::bindings

@@ -16,21 +16,22 @@ namespace py = pybind11;
 namespace {
 
 // Atomics instead of a mutex: a mutex held by another thread would stay locked in a forked process.
-std::atomic<int> in_progress{0};
-std::atomic<bool> ends{false}, lost_threads{false};
+std::atomic<int> in_progress{0};  ///< number of living WorkInProgress objects
+std::atomic<bool> is_exiting{false}, lost_threads{false};
 
-std::vector<void (*)()>& others() {
+/// Returns the functions registered by call_at_exit.
+std::vector<void (*)()>& exit_functions() {
     static auto* const list = new std::vector<void (*)()>;
     return *list;
 }
 
 void wait_for_all_work() {
     using namespace std::chrono_literals;
-    ends = true;
+    is_exiting = true;
     const py::gil_scoped_release release;
-    for (void (*const stop)() : others()) stop();
-    // Work checks 20 times a second whether Python exits. A user's progress function that does not return must not
-    // delay the exit for ever.
+    for (void (*const stop)() : exit_functions()) stop();
+    // Work checks 20 times a second whether Python exits. The wait is limited, because a user's progress function that
+    // does not return must not delay the exit for ever.
     for (auto waited = 0ms; in_progress > 0 && waited < 10s; waited += 5ms) std::this_thread::sleep_for(5ms);
 }
 
@@ -40,8 +41,8 @@ WorkInProgress::WorkInProgress() {
     stop_at_exit();
     if (lost_threads)
         throw InputError(
-            "this process was forked while another thread was at work in realcam, and cannot work itself; fork before, "
-            "or start processes with the method \"spawn\"");
+            "this process was forked while another thread was running realcam, and cannot use realcam itself; fork "
+            "earlier, or start processes with the method \"spawn\"");
     ++in_progress;
 }
 
@@ -54,17 +55,18 @@ bool has_lost_threads() {
 }
 
 void stop_at_exit() {
-    if (ends) throw Cancelled();
+    if (is_exiting) throw Cancelled();
 }
 
-void stop_too_at_exit(void (*stop)()) {
-    others().push_back(stop);
+void call_at_exit(void (*stop)()) {
+    exit_functions().push_back(stop);
 }
 
 void watch_exit_and_fork() {
     py::module_::import("atexit").attr("register")(py::cpp_function(&wait_for_all_work));
     pthread_atfork(nullptr, nullptr, [] {
-        // The child lacks the threads that would finish that work, so its exit must not wait for them.
+        // The forked child lacks the threads that would finish the work in progress, so its exit must not wait for
+        // them.
         if (in_progress.exchange(0) > 0) lost_threads = true;
     });
 }

@@ -22,14 +22,15 @@ class Unlocked {
     pybind11::gil_scoped_release release_;
 };
 
-/// True in a process that was forked during a call without the GIL: waiting for its threads would never end.
+/// Returns true in a process that was forked during a call without the GIL. It lacks that call's threads, so that
+/// waiting for them would never end.
 bool has_lost_threads();
 
 /// Throws Cancelled while Python exits.
 void stop_at_exit();
 
-/// Registers a function that Python's exit calls without the GIL, to stop work that is not within a call.
-void stop_too_at_exit(void (*stop)());
+/// Registers a function that Python's exit calls without the GIL, to stop background work outside of any call.
+void call_at_exit(void (*stop)());
 
 /// Makes Python's exit stop all work and wait for it, and makes forked processes detect whether threads were lost.
 void watch_exit_and_fork();

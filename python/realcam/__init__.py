@@ -116,7 +116,8 @@ if TYPE_CHECKING:
     from .vision import CameraModelFit, OpticalFlow, Rig, RigCamera, fit_camera_model, optical_flow, save_colmap
     from .vision.camera_json import camera_json, save_camera_json
 
-# Names of the packages of tools, which are imported on first use: they and their libraries take longer than the core.
+# Public names by the package of tools that defines them. The packages are imported on first use, because importing them
+# and their libraries takes longer than the core.
 _TOOLS = {
     "accuracy": "AccuracyCost accuracy_cost",
     "analysis": "analysis",
@@ -147,7 +148,10 @@ def __dir__() -> list[str]:
 
 
 class _ToolMethod:
-    """A method of a class of the extension. Its first use imports the package of tools that defines it."""
+    """A method of a class of the extension. Its first use imports the package of tools that defines it.
+
+    type_, name: class and name of the method. package, function: where it is defined.
+    """
 
     def __init__(self, type_: type, name: str, package: str, function: str) -> None:
         self.type, self.name, self.package, self.function = type_, name, package, function

@@ -1,4 +1,4 @@
-"""`python -m realcam`: the command."""
+"""`python -m realcam` runs the command `realcam`."""
 
 from realcam_command.main import main
 

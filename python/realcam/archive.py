@@ -23,7 +23,11 @@ _OWNER_LENGTH, _DIGEST_LENGTH = 64, 64
 
 
 def packed(about: Any, arrays: Mapping[str, np.ndarray], *, owner: str = "", is_compressed: bool = False) -> bytes:
-    """The content of an archive. owner: at most 64 ASCII characters; about: a value that JSON can hold."""
+    """Returns the content of an archive.
+
+    about: the description, a value that JSON can represent. owner: identity of the job that the archive belongs to, at
+    most 64 ASCII characters.
+    """
     content = io.BytesIO()
     text = np.frombuffer(json.dumps(about).encode(), np.uint8)
     (np.savez_compressed if is_compressed else np.savez)(content, about=text, **arrays)  # type: ignore[arg-type]
@@ -39,16 +43,16 @@ def write_archive(path: str | os.PathLike[str], content: bytes) -> None:
 
 
 def digest_of(content: bytes) -> str:
-    """The digest at the end of an archive's content."""
+    """Returns the digest at the end of an archive's content."""
     return content[-_DIGEST_LENGTH:].decode("ascii", "replace")
 
 
 def read_archive(
     path: Path, *, limit_bytes: int, owner: str = "", digest: str | None = None
 ) -> tuple[Any, dict[str, np.ndarray]]:
-    """Description and arrays of an archive.
+    """Returns the description and the arrays of an archive.
 
-    limit_bytes: the largest permitted size of the unpacked content. digest: the expected one, if it is known. Raises
+    limit_bytes: the largest permitted size of the unpacked content. digest: the expected digest; None: any. Raises
     InputError if the file is missing, not a regular file, damaged, too large, or belongs to another owner.
     """
     content = read_regular(path, limit_bytes + (1 << 20))
@@ -90,7 +94,7 @@ def owner_in_file(path: str | os.PathLike[str]) -> str | None:
 
 
 def read_regular(path: Path, limit_bytes: int) -> bytes:
-    """The content of a regular file, never through a link. Raises InputError."""
+    """Returns the content of a regular file of at most limit_bytes; does not follow links. Raises InputError."""
     try:
         with open(path, "rb", opener=_opened_without_following) as file:
             about = os.fstat(file.fileno())

@@ -56,6 +56,8 @@ def explain_wrong_arguments(core: ModuleType) -> list[type]:
 
 
 def _explaining(function: Callable[..., Any], qualified_name: str, error_type: type[Exception]) -> Callable[..., Any]:
+    """Returns a Python function that calls `function` and converts its TypeError to error_type with a better
+    message."""
     doc = cleaned(function.__doc__ or "")
 
     @functools.wraps(function)
@@ -89,8 +91,9 @@ def cleaned(doc: str) -> str:
 def complaint(doc: str, arguments: tuple[Any, ...], named: dict[str, Any]) -> str:
     """Returns the error message for a call whose arguments do not match the signature in the docstring."""
     function = _definition(doc.split("\n")[0])
-    own = function.args.args[0].annotation if function.args.args and function.args.args[0].arg == "self" else None
-    name = f"{ast.unparse(own)}()" if own and function.name == "__init__" else f"{function.name}()"
+    is_method = function.args.args and function.args.args[0].arg == "self"
+    owner = function.args.args[0].annotation if is_method else None
+    name = f"{ast.unparse(owner)}()" if owner and function.name == "__init__" else f"{function.name}()"
     parameters = _parameters(function)
     problem = _misfit_of_names(name, parameters, arguments, named)
     if problem:
@@ -100,14 +103,15 @@ def complaint(doc: str, arguments: tuple[Any, ...], named: dict[str, Any]) -> st
         del bound["self"]  # not constructed yet, so it has no repr
     annotations = {p.name: p.annotation for p in parameters}
     for check in (_misfit, _out_of_range):
-        for what, value in bound.items():
-            wanted = check(annotations[what], value)
-            if wanted:
-                return f"{what} must be {wanted}; it is {_text(value)}"
+        for argument, value in bound.items():
+            expected = check(annotations[argument], value)
+            if expected:
+                return f"{argument} must be {expected}; it is {_text(value)}"
     return f"{name} cannot take {', '.join(f'{k}={_text(v)}' for k, v in bound.items())}"
 
 
 def _definition(signature: str) -> ast.FunctionDef:
+    """Parses a signature of pybind11. Raises SyntaxError."""
     # Default values appear as their repr, which may not be valid Python, and property getters have no name.
     text = re.sub(r"<[^<>]*>", "None", signature)
     tree = ast.parse(f"def {'property' if text.startswith('(') else ''}{text}: ...")
@@ -117,16 +121,19 @@ def _definition(signature: str) -> ast.FunctionDef:
 
 
 def _parameters(function: ast.FunctionDef) -> Sequence[inspect.Parameter]:
+    """Returns the parameters; their annotations are syntax trees, and all defaults are None."""
     arguments = function.args
     required = len(arguments.args) - len(arguments.defaults)
 
-    def made(argument: ast.arg, kind: Any, given: bool) -> inspect.Parameter:
-        default = inspect.Parameter.empty if given else None
+    def parameter(argument: ast.arg, kind: Any, is_required: bool) -> inspect.Parameter:
+        default = inspect.Parameter.empty if is_required else None
         return inspect.Parameter(argument.arg, kind, default=default, annotation=argument.annotation)
 
-    positional = [made(a, inspect.Parameter.POSITIONAL_OR_KEYWORD, i < required) for i, a in enumerate(arguments.args)]
+    positional = [
+        parameter(a, inspect.Parameter.POSITIONAL_OR_KEYWORD, i < required) for i, a in enumerate(arguments.args)
+    ]
     by_name = [
-        made(a, inspect.Parameter.KEYWORD_ONLY, default is None)
+        parameter(a, inspect.Parameter.KEYWORD_ONLY, default is None)
         for a, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
     ]
     return [*positional, *by_name]
@@ -147,6 +154,7 @@ def _text(value: Any) -> str:
 def _misfit_of_names(
     function: str, parameters: Sequence[inspect.Parameter], arguments: tuple[Any, ...], named: dict[str, Any]
 ) -> str | None:
+    """Returns the message if arguments are unknown, duplicate, missing or too many; None if they fit the parameters."""
     positional = [p.name for p in parameters if p.kind is inspect.Parameter.POSITIONAL_OR_KEYWORD]
     names = [p.name for p in parameters]
     for name in named:
@@ -156,43 +164,44 @@ def _misfit_of_names(
         if name in positional[: len(arguments)]:
             return f"{function} has the argument {name} twice"
     if len(arguments) > len(positional):
-        own = positional[:1] == ["self"]
-        most, given = len(positional) - own, len(arguments) - own
-        rest = ", ".join(p.name for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY)
+        has_self = positional[:1] == ["self"]
+        limit, count = len(positional) - has_self, len(arguments) - has_self
+        keyword_only = ", ".join(p.name for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY)
         return (
-            f"{function} takes at most {_counted(most)} argument{'' if most == 1 else 's'} without a name, "
-            f"and {_counted(given)} are given" + (f"; by name there are {rest}" if rest else "")
+            f"{function} takes at most {_counted(limit)} argument{'' if limit == 1 else 's'} without a name, "
+            f"and {_counted(count)} are given" + (f"; by name there are {keyword_only}" if keyword_only else "")
         )
-    there = {*positional[: len(arguments)], *named}
-    missing = [p.name for p in parameters if p.default is inspect.Parameter.empty and p.name not in there]
+    present = {*positional[: len(arguments)], *named}
+    missing = [p.name for p in parameters if p.default is inspect.Parameter.empty and p.name not in present]
     return f"{function} needs the argument {' and '.join(missing)}" if missing else None
 
 
 def _misfit(annotation: ast.expr | None, value: Any) -> str | None:
     """Returns the description of the expected type if a value does not match the annotation; None if it does."""
     if isinstance(annotation, ast.BinOp):
-        wanted = [_misfit(side, value) for side in (annotation.left, annotation.right)]
-        return f"{wanted[0]} or {wanted[1]}" if wanted[0] and wanted[1] else None
+        expected = [_misfit(side, value) for side in (annotation.left, annotation.right)]
+        return f"{expected[0]} or {expected[1]}" if expected[0] and expected[1] else None
     if isinstance(annotation, ast.Constant):  # None
         return None if value is None else "None"
     if isinstance(annotation, ast.Subscript):
         return _misfit_of_items(annotation, value)
     kind = annotation.id if isinstance(annotation, ast.Name) else "object"
     if kind in SCALARS:
-        wanted_here, fits = SCALARS[kind]
-        return None if fits(value) else wanted_here
+        description, fits = SCALARS[kind]
+        return None if fits(value) else description
     if kind in UNCHECKED or type(value).__name__ == kind:
         return None
     return f"{'an' if kind[0] in 'AEIO' else 'a'} {kind}"
 
 
 def _misfit_of_items(annotation: ast.Subscript, value: Any) -> str | None:
+    """Implements _misfit for annotations with items, such as list[float] or tuple[int, int]."""
     outer = ast.unparse(annotation.value)
     items = annotation.slice.elts if isinstance(annotation.slice, ast.Tuple) else [annotation.slice]
     if outer in ("Optional", "Union"):  # spelling of pybind11 before version 3
         options = [*items, ast.Constant(None)] if outer == "Optional" else items
-        wanted = [_misfit(option, value) for option in options]
-        return None if None in wanted else " or ".join(map(str, wanted))
+        expected = [_misfit(option, value) for option in options]
+        return None if None in expected else " or ".join(map(str, expected))
     if outer in ("Mapping", "dict"):
         return None if isinstance(value, Mapping) and all(_all_fit(items, pair) for pair in value.items()) else "a dict"
     if outer not in ("Sequence", "Iterable", "list", "tuple"):  # the function itself checks the value
@@ -211,6 +220,7 @@ class _Misfit:
 
 
 def _listed(value: Any) -> list[Any] | None:
+    """Returns the items of an iterable; None for texts and values that are not iterable."""
     if isinstance(value, (str, bytes)):
         return None
     try:
@@ -248,6 +258,7 @@ def _is_array(value: Any) -> bool:
 
 # Annotations of values that the function itself converts.
 UNCHECKED = ("object", "Any", "DTypeLike")
+# Descriptions of types, and functions that return True for a value of the type, by annotation.
 SCALARS: dict[str, tuple[str, Callable[[Any], bool]]] = {
     "float": ("a number", _is_number),
     "complex": ("a number", lambda value: not isinstance(value, (str, bytes)) and _succeeds(complex, value)),
@@ -262,7 +273,7 @@ def _out_of_range(annotation: ast.expr | None, value: Any) -> str | None:
     """Returns the permitted range if an int argument exceeds the 32 bits of C++'s int; None if it fits."""
     limit = 2**31
     values = _listed(value) or [value]
-    wanted = annotation is not None and re.search(r"\bint\b", ast.unparse(annotation))
-    if wanted and any(isinstance(v, int) and not -limit <= v < limit for v in values):
+    is_int = annotation is not None and re.search(r"\bint\b", ast.unparse(annotation))
+    if is_int and any(isinstance(v, int) and not -limit <= v < limit for v in values):
         return f"a whole number between {-limit} and {limit - 1}"
     return None

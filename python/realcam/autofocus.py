@@ -1,4 +1,4 @@
-"""Phase-detection autofocus with dual pixels: by the disparity of the images of the exit pupil's two halves."""
+"""Phase-detection autofocus with dual pixels, from the disparity of the images through the exit pupil's two halves."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ Array = NDArray[np.float64]
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # weights for linear Rec. 709
 TRACED_MODELS = ("full", "full_double", "polynomial")  # camera models with the aberrations of the lens
-MOST_STEPS = 12
-MOST_MAGNIFICATION = 0.9  # focus limit of lenses whose file states none
-LEAST_CORRELATION = 0.2  # two images of pure noise correlate by some hundredths
+MAX_STEPS = 12
+MAX_MAGNIFICATION = 0.9  # focus limit of lenses whose file does not specify a nearest focus
+MIN_CORRELATION = 0.2  # the correlation of two images of pure noise is some hundredths
 
 
 @dataclass(frozen=True)
@@ -25,8 +25,8 @@ class Autofocus:
     """Result of autofocus().
 
     camera: the focused camera. focus_distances_m, disparities_px: focus distance and disparity at each step. The
-    disparity is the shift, in columns to the right, of the right pupil half's image against the left one's, less its
-    value in focus; it is positive if the scene is farther away than the focus distance.
+    disparity is the shift, in columns to the right, of the right pupil half's image relative to the left half's, minus
+    its value in focus; it is positive if the scene is farther away than the focus distance.
     """
 
     camera: Camera
@@ -56,11 +56,11 @@ def autofocus(
     focus range of the lens.
     """
     columns, rows = camera.film.resolution
-    middle = at or (columns / 2, rows / 2)
+    centre = at or (columns / 2, rows / 2)
     width, height = window_px or (max(16, columns // 4), max(8, rows // 4))
     region = (
-        _first(middle[0], width, columns),
-        _first(middle[1], height, rows),
+        _window_start(centre[0], width, columns),
+        _window_start(centre[1], height, rows),
         min(width, columns),
         min(height, rows),
     )
@@ -77,9 +77,9 @@ def autofocus(
         extensions.append(extension)
         if abs(disparity) <= tolerance_px:
             return Autofocus(camera, tuple(distances), tuple(disparities))
-        if len(disparities) == MOST_STEPS:
+        if len(disparities) == MAX_STEPS:
             raise InputError(
-                f"no focus was found in {MOST_STEPS} steps; the disparity is still {disparity:.3g} pixels (use a "
+                f"no focus was found in {MAX_STEPS} steps; the disparity is still {disparity:.3g} pixels (use a "
                 "window with one depth in it, or more samples)"
             )
         if len(disparities) > 1 and disparity != disparities[-2]:
@@ -89,52 +89,57 @@ def autofocus(
         focused = _refocused(camera, extension - factor * disparity * _defocus_mm_per_px(camera))
         if focused.lens.focus_distance_m == camera.lens.focus_distance_m:
             raise InputError(
-                f"the window shows what cannot be brought into focus: at {camera.lens.focus_distance_m:.4g} m, where "
-                f"the range of the lens ends, its disparity is {disparity:.3g} pixels"
+                f"the content of the window cannot be brought into focus: at {camera.lens.focus_distance_m:.4g} m, "
+                f"where the focus range of the lens ends, its disparity is {disparity:.3g} pixels"
             )
         camera = focused
         extension = _extension_mm(camera)
         session.set(camera=camera)
 
 
-def _first(middle: float, size: int, of: int) -> int:
-    return int(np.clip(round(middle - size / 2), 0, max(0, of - size)))
+def _window_start(centre: float, size: int, film_size: int) -> int:
+    """Returns the first column or row of a window, which is moved to lie on the film."""
+    return int(np.clip(round(centre - size / 2), 0, max(0, film_size - size)))
 
 
 def _disparity_px(session: Session, region: tuple[int, int, int, int], spp: int) -> float:
-    """Shift of the right pupil half's image against the left one's, in columns to the right, by cross-correlation.
+    """Returns the shift of the right pupil half's image relative to the left half's, in columns to the right.
 
-    Raises InputError if the correlation is below LEAST_CORRELATION.
+    It is the position of the maximum of their cross-correlation, interpolated by a parabola. Raises InputError if the
+    correlation is below MIN_CORRELATION.
     """
     sums = session.expose(region, 0, spp).pixels
     assert sums is not None
     right = sums["auxiliary"] @ LUMINANCE
     left = sums["irradiance"] @ LUMINANCE - right
     width = left.shape[1]
-    most = width // 2
-    shifts = np.arange(-most, most + 1)
-    matches = np.array(
+    max_shift = width // 2
+    shifts = np.arange(-max_shift, max_shift + 1)
+    correlations = np.array(
         [_correlation(left[:, max(0, -s) : width - max(0, s)], right[:, max(0, s) : width + min(0, s)]) for s in shifts]
     )
-    best = int(matches.argmax())
-    if matches[best] < LEAST_CORRELATION:
-        raise InputError("the window has too little contrast across its columns to be focused on; choose another place")
-    if best in (0, 2 * most):
+    best = int(correlations.argmax())
+    if correlations[best] < MIN_CORRELATION:
+        raise InputError(
+            "the window has too little contrast across its columns to be focused on; choose another window"
+        )
+    if best in (0, 2 * max_shift):
         return float(shifts[best])
-    before, here, after = matches[best - 1 : best + 2]
-    bend = before - 2 * here + after
-    return float(shifts[best] + (0.5 * (before - after) / bend if bend < 0 else 0.0))
+    left_value, peak, right_value = correlations[best - 1 : best + 2]
+    curvature = left_value - 2 * peak + right_value
+    return float(shifts[best] + (0.5 * (left_value - right_value) / curvature if curvature < 0 else 0.0))
 
 
 def _correlation(one: Array, other: Array) -> float:
-    """Normalised correlation of two images after subtraction of their row means, -1 to 1; 0 if one is uniform."""
+    """Returns the normalised correlation of two images without their row means, -1 to 1; 0 if one is uniform."""
     a, b = one - one.mean(axis=1, keepdims=True), other - other.mean(axis=1, keepdims=True)
     norm = math.sqrt(float((a * a).sum() * (b * b).sum()))
     return float((a * b).sum()) / norm if norm > 0 else 0.0
 
 
 def _disparity_in_focus_px(camera: Camera) -> float:
-    """Disparity, in columns, of the axial point in the plane in focus, from ray centroids of the exit pupil's halves.
+    """Returns the disparity, in columns, of the axial point in the plane in focus, from ray centroids of the exit
+    pupil's halves.
 
     Returns 0 for camera models without aberrations and for focus at infinity.
     """
@@ -160,7 +165,7 @@ def _disparity_in_focus_px(camera: Camera) -> float:
 
 
 def _defocus_mm_per_px(camera: Camera) -> float:
-    """Distance of the image in front of the film per column of disparity, in mm, to first order.
+    """Returns the distance of the image in front of the film per column of disparity, in mm, to first order.
 
     The centroid of half a disc of radius r is 4 r / (3 pi) from the disc's centre, so the centroids of the exit pupil's
     halves are 8 r / (3 pi) apart.
@@ -174,35 +179,36 @@ def _defocus_mm_per_px(camera: Camera) -> float:
 
 
 def _between_foci_mm(lens: Lens) -> float:
-    """Distance from the front focal point to the rear one, in mm."""
+    """Returns the distance from the front focal point to the rear one, in mm."""
     data = lens.first_order()
     back = lens.film_position_mm - lens.film_distance_mm + data.back_focal_distance_mm
     return float(back - data.front_focal_distance_mm)
 
 
-def _square_mm2(lens: Lens) -> float:
-    """Product of the front and the rear focal length, n' f^2, in mm^2."""
+def _focal_length_product_mm2(lens: Lens) -> float:
+    """Returns the product of the front and the rear focal length, n' f^2, in mm^2."""
     data = lens.first_order()
     return float(data.image_index * data.effective_focal_length_mm**2)
 
 
 def _extension_mm(camera: Camera) -> float:
-    """Distance from the rear focal point to the film, in mm, for the camera's focus distance.
+    """Returns the distance from the rear focal point to the film, in mm, for the camera's focus distance.
 
-    By Newton's x x' = n' f^2; of its two solutions the one with the smaller image.
+    It follows from Newton's equation x x' = n' f^2; of its two solutions, the one with the smaller image.
     """
     lens = camera.lens
     if math.isinf(lens.focus_distance_m):
         return 0.0
-    both = 1000 * lens.focus_distance_m - _between_foci_mm(lens)
-    return 0.5 * (both - math.sqrt(max(0.0, both * both - 4 * _square_mm2(lens))))
+    sum_mm = 1000 * lens.focus_distance_m - _between_foci_mm(lens)  # x + x'
+    return 0.5 * (sum_mm - math.sqrt(max(0.0, sum_mm * sum_mm - 4 * _focal_length_product_mm2(lens))))
 
 
 def _refocused(camera: Camera, extension_mm: float) -> Camera:
-    """Focuses on the object whose image lies extension_mm behind the rear focal point, clamped to the focus range."""
+    """Returns the camera focused on the object whose image lies extension_mm behind the rear focal point, clamped to
+    the focus range."""
     lens, focal = camera.lens, camera.lens.first_order().effective_focal_length_mm
     if extension_mm <= 0:
         return camera.replace(lens=lens.focused(math.inf))
-    extension_mm = min(extension_mm, MOST_MAGNIFICATION * focal)
-    distance_m = 0.001 * (_between_foci_mm(lens) + extension_mm + _square_mm2(lens) / extension_mm)
+    extension_mm = min(extension_mm, MAX_MAGNIFICATION * focal)
+    distance_m = 0.001 * (_between_foci_mm(lens) + extension_mm + _focal_length_product_mm2(lens) / extension_mm)
     return camera.replace(lens=lens.focused(max(distance_m, lens.nearest_focus_m)))

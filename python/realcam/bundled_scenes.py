@@ -16,7 +16,10 @@ SCENE_SUFFIXES = (".gltf", ".glb", ".obj", ".ply")
 
 @cache
 def scenes_folder() -> Path:
-    """Folder of the bundled scenes: in the installed package, or in the repository. Raises InputError if missing."""
+    """Returns the folder of the bundled scenes, in the installed package or in the repository.
+
+    Raises InputError if it is missing.
+    """
     package = Path(__file__).resolve().parent
     for folder in (package / "scenes", package.parents[1] / "scenes"):
         if (folder / "demo.toml").is_file():
@@ -25,6 +28,7 @@ def scenes_folder() -> Path:
 
 
 def shot_names() -> list[str]:
+    """Returns the names of the bundled shots."""
     return sorted(path.stem for path in scenes_folder().glob("*.toml"))
 
 
@@ -51,6 +55,7 @@ _read_scene = Scene.load
 
 
 def _load(*arguments: Any, **named: Any) -> Scene:
+    """Loads a scene as Scene.load does, also by the name of a bundled scene, and replaces it."""
     if arguments:
         arguments = (bundled_file(arguments[0], SCENE_SUFFIXES), *arguments[1:])
     elif "path" in named:

@@ -1,4 +1,4 @@
-"""Intel's Open Image Denoise, from the extra realcam[denoise]."""
+"""Denoising by Intel's Open Image Denoise, from the extra realcam[denoise]."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ GUIDES = ("albedo", "normal", "traced_light")  #: two guide layers, and the ligh
 
 
 def is_installed() -> bool:
+    """Returns True if Open Image Denoise is installed."""
     return bool(denoiser_library())
 
 
@@ -29,7 +30,7 @@ def denoised(pixels: np.ndarray, layers: Mapping[str, np.ndarray], device: str) 
     """
     if not all(name in layers for name in GUIDES):
         raise InputError(
-            f"the denoiser wants the layers {', '.join(GUIDES)}; render(..., layers={list(GUIDES)}) brings them"
+            f"the denoiser requires the layers {', '.join(GUIDES)}; render(..., layers={list(GUIDES)}) adds them"
         )
     denoiser = opened(device)
     return without_noise(denoiser, pixels, *(layers[name] for name in GUIDES)), denoiser.name
@@ -47,14 +48,15 @@ def without_noise(
 ) -> np.ndarray:
     """Returns the denoised (H, W, 3) exposure.
 
-    traced_light (lamps, ghosts, starbursts by light tracing) is not denoised: its noise is fine grain on the discs of
-    lamps, which the network takes for detail and spreads. Raises Cancelled if `progress`, which is called meanwhile,
+    pixels: exposure; all arrays have the shape (H, W, 3). traced_light (lamps, ghosts, starbursts by light tracing) is
+    part of it, and is not denoised: its noise is fine grain on the discs of lamps, which the network takes for detail
+    and spreads. fast: lower quality in less time. Raises Cancelled if `progress`, which is called meanwhile with 0,
     returns False.
     """
-    rest = np.maximum(pixels - traced_light, np.float32(0))
-    result: np.ndarray = denoiser.denoised(rest, albedo, normal, fast, progress)
+    sampled_light = np.maximum(pixels - traced_light, np.float32(0))  # light of the pixels' own samples
+    result: np.ndarray = denoiser.denoised(sampled_light, albedo, normal, fast, progress)
     # If light-traced lamps dominate a pixel, part of its path-traced light is theirs, too, and its noise is
     # invisible: such pixels keep it undenoised.
     share = traced_light / np.maximum(traced_light + result, np.float32(1e-30))
-    result += share * (rest - result) + traced_light
+    result += share * (sampled_light - result) + traced_light
     return result

@@ -23,6 +23,7 @@ SRGB_FROM_XYZ = (3.2404542, -1.5371385, -0.4985314, -0.969266, 1.8760108, 0.0415
 # Exposure that saturates a sensor, 78 / iso lux seconds (ISO 12232), over the exposure of display white,
 # 1 / (0.018 iso) lux seconds.
 SATURATION_OVER_WHITE = 0.018 * 78
+# Types of TIFF tags, as tifffile names them.
 ASCII, BYTE, SHORT, LONG, RATIONAL, SRATIONAL = "s", "B", "H", "I", "2I", "2i"
 
 
@@ -89,21 +90,21 @@ def write_array(array: np.ndarray, path: str | os.PathLike[str]) -> None:
 
 
 def _rationals(values: Any, signed: bool = False) -> tuple[int, ...]:
-    """Numerators and denominators of numbers, precise to 1e-9 below 2, to 1e-6 above, and less for large numbers.
-    Values beyond the range of 32 bits are clamped.
+    """Returns numerators and denominators of numbers in turn, precise to 1e-9 below 2, to 1e-6 above, and less for
+    large numbers. Values beyond the range of 32 bits are clamped.
     """
     flat = []
-    most = 2 ** (31 if signed else 32) - 1
-    for value in np.clip(np.ravel(values).astype(np.float64), -most if signed else 0, most):
+    limit = 2 ** (31 if signed else 32) - 1
+    for value in np.clip(np.ravel(values).astype(np.float64), -limit if signed else 0, limit):
         denominator = 10**9 if abs(value) < 2 else 10**6
-        while denominator > 1 and abs(value) * denominator > most:
+        while denominator > 1 and abs(value) * denominator > limit:
             denominator //= 10
         flat += [round(float(value) * denominator), denominator]
     return tuple(flat)
 
 
 def _tags(raw: Negative) -> list[tuple[int, str, int, Any]]:
-    """Code, type, count and value of DNG's and EXIF's tags, in the order of the codes."""
+    """Returns (code, type, count, value) of all DNG and EXIF tags, in the order of the codes."""
     height, width = raw.mosaic.shape
     model = f"realcam {raw.sensor}"
     filters = raw.filters

@@ -23,12 +23,12 @@ STOP_PROBES = np.array(
 
 
 def field_arguments(field: FieldPosition) -> dict[str, Any]:
-    """Keyword arguments that select a field point in Lens.spot and similar methods."""
+    """Returns the keyword arguments that specify a field point in Lens.spot and similar methods."""
     return {"film_mm": field} if isinstance(field, tuple) else {"field_deg": float(field)}
 
 
 def field_text(field: FieldPosition) -> str:
-    """Text of a field point, for messages."""
+    """Returns the text of a field point, for messages."""
     return f"the film point ({field[0]:.6g}, {field[1]:.6g}) mm" if isinstance(field, tuple) else f"{field:.6g} deg"
 
 
@@ -42,13 +42,14 @@ class Field:
 
 
 def fields_at(lens: Lens, shares: Sequence[float], object_distance_m: float | None = None) -> tuple[Field, ...]:
-    """Field points at fractions of the film corner's height, or of the largest illuminated height if that is smaller.
+    """Returns field points at fractions of the height of the film's corner, or of the largest illuminated height if
+    that is smaller.
 
-    object_distance_m: object plane to front vertex; None: the plane in focus.
+    object_distance_m: distance from the object plane to the front vertex; None: the plane in focus.
     Raises InputError if no light passes the lens, or if a fraction does not lie between -1 and 1.
     """
     if not all(-1 <= share <= 1 for share in shares):
-        raise InputError("fields are shares of the film's corner: they must be numbers from -1 to 1")
+        raise InputError("fields must be fractions of the height of the film's corner, from -1 to 1")
     corner = 0.5 * math.hypot(*lens.film_mm)
     edge = angle_of_height(lens, corner, object_distance_m)
     fields = []
@@ -64,15 +65,15 @@ def fields_at(lens: Lens, shares: Sequence[float], object_distance_m: float | No
 
 
 def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field, ...]:
-    """Field points along x (axis 0) or y (1) of the film, for lenses of any symmetry, at fractions of half its side.
+    """Returns field points along x (axis 0) or y (1) of the film, at fractions of half its side, for any lens.
 
     A point without light is moved inwards until it has some. The angle is between the chief ray and the z axis. Raises
     InputError if no light passes the lens.
     """
     if not all(-1 <= share <= 1 for share in shares):
-        raise InputError("fields are shares of the film's side: they must be numbers from -1 to 1")
+        raise InputError("fields must be fractions of half the film's side, from -1 to 1")
     probes = _PROBES if axis == 1 else _PROBES[:, ::-1]
-    from_middle = np.abs(probes[:, axis])
+    from_centre = np.abs(probes[:, axis])
     fields = []
     for share in shares:
         height = share * 0.5 * lens.film_mm[axis]
@@ -84,22 +85,22 @@ def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field,
                 rays = None
             if rays is not None and (rays.status == RayStatus.OK).any():
                 # The chief ray, or the ray closest to it if the centre of the pupil is obstructed.
-                closest = np.argmin(np.where(rays.status == RayStatus.OK, from_middle, np.inf))
-                way = rays.directions[closest]
-                angle = math.degrees(math.atan2(way[axis], way[2]))
+                closest = np.argmin(np.where(rays.status == RayStatus.OK, from_centre, np.inf))
+                direction = rays.directions[closest]
+                angle = math.degrees(math.atan2(direction[axis], direction[2]))
                 fields.append(Field(round(angle, 9) + 0.0, height, share))  # turns -1e-23 and -0.0 on the axis into 0
                 break
             height *= 0.95
         else:
             raise InputError(
-                f'no light of lens "{lens.name}" reaches the film between its middle and {share:.3g} of its '
+                f'no light of lens "{lens.name}" reaches the film between its centre and {share:.3g} of its '
                 f"half side along {'xy'[axis]}"
             )
     return tuple(fields)
 
 
 def fields_of_angles(lens: Lens, angles_deg: Sequence[float], object_distance_m: float | None) -> tuple[Field, ...]:
-    """Field points by their angle in object space. Raises InputError if no light of an angle passes."""
+    """Returns field points by their angles in object space. Raises InputError if no light of an angle passes."""
     return tuple(
         Field(angle, _meridional_spot(lens, angle, object_distance_m, lens.wavelength_nm).chief_ray_mm[1], None)
         for angle in angles_deg
@@ -115,27 +116,27 @@ def angle_of_height(
     that pass on the axis still pass, and its height. Raises InputError if no light passes the lens.
     """
     wavelength = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
-    least = 1
+    min_rays = 1  # rays that must pass at an angle inside the field
 
-    def missing(angle: float) -> float:
+    def height_error(angle: float) -> float:
         try:
             spot = _meridional_spot(lens, angle, object_distance_m, wavelength)
         except InputError:  # beyond the edge of the lens's field
             return math.nan
-        return abs(spot.chief_ray_mm[1]) - height_mm if _passing(spot) >= least else math.nan
+        return abs(spot.chief_ray_mm[1]) - height_mm if _passing(spot) >= min_rays else math.nan
 
-    at_low = missing(0.0)
+    at_low = height_error(0.0)
     if math.isnan(at_low):
         raise InputError(f'no light passes lens "{lens.name}"')
-    least = max(1, _passing(_meridional_spot(lens, 0.0, object_distance_m, wavelength)) // 4)
+    min_rays = max(1, _passing(_meridional_spot(lens, 0.0, object_distance_m, wavelength)) // 4)
     focal_length = lens.first_order(wavelength).effective_focal_length_mm
     guess = math.degrees(math.atan(height_mm / abs(focal_length)))
     low, step, growth = 0.0, min(max(guess, 1e-3), _LARGEST_STEP_DEG), 2.0
     while at_low < 0:
         high = low + step
-        at_high = missing(high)
+        at_high = height_error(high)
         if at_high >= 0:
-            low = root_between(missing, low, high, at_low, at_high, 1e-10)
+            low = root_between(height_error, low, high, at_low, at_high, 1e-10)
             break
         if math.isnan(at_high):
             step, growth = 0.5 * step, 1.0
@@ -152,4 +153,5 @@ def _meridional_spot(lens: Lens, angle_deg: float, object_distance_m: float | No
 
 
 def _passing(spot: Spot) -> int:
+    """Returns the number of rays that pass the lens."""
     return int(np.count_nonzero(spot.status == RayStatus.OK))

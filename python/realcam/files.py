@@ -41,11 +41,11 @@ def check_target(path: str | os.PathLike[str], suffixes: Sequence[str] = ()) -> 
 def check_targets(paths: Iterable[Path], *, outside: Path | None = None) -> set[Path]:
     """Returns the resolved paths of output files. Raises what check_target raises, and InputError if one lies in the
     folder `outside`, which the command reads."""
-    followed = {check_target(path).resolve() for path in paths}
-    for path in followed:
+    resolved = {check_target(path).resolve() for path in paths}
+    for path in resolved:
         if outside is not None and path.is_relative_to(outside.resolve()):
             raise InputError(f"{path}: lies in the folder {outside}, which the output is made from; choose another")
-    return followed
+    return resolved
 
 
 def make_folder(path: Path) -> None:
@@ -91,8 +91,9 @@ def write_whole(
 
 
 def remove_leftovers(folder: Path) -> None:
-    """Removes temporary files that a killed write_whole has left in a folder or below it: those that were not written
-    to for a minute. Files that cannot be removed stay.
+    """Removes temporary files that a killed write_whole has left in a folder or its subfolders.
+
+    Such files have not been written to for _QUIET_S seconds. Files that cannot be removed stay.
     """
     leftovers = list(folder.rglob(f"{_TEMPORARY}*"))
     if not leftovers:
@@ -108,7 +109,7 @@ def remove_leftovers(folder: Path) -> None:
                     path.unlink()
 
 
-_TEMPORARY = ".realcam-"
+_TEMPORARY = ".realcam-"  # beginning of the names of temporary files
 _QUIET_S = 60.0
 
 
@@ -128,6 +129,7 @@ def _take_name(temporary: Path, target: Path) -> None:
 
 
 def _why_no_file(target: Path) -> str:
+    """Returns the reason why a file cannot be written; empty if it can."""
     folder = target.parent
     if not folder.is_dir():
         return f"the folder {folder} does not exist"
@@ -149,7 +151,7 @@ def _followed(path: str | os.PathLike[str]) -> Path:
 
 @contextmanager
 def _errors_named(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Turns OSError into ImageFileError that names the user's path instead of the temporary file."""
+    """Converts OSError to an ImageFileError that names the user's path instead of the temporary file."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Parts of a picture, exposed by sessions on any number of machines."""
+"""Parts of a picture as sums of samples, rendered by sessions on any number of machines, and their accumulation."""
 
 from __future__ import annotations
 
@@ -19,17 +19,18 @@ from .pickling import same_arrays, set_checked_state
 if TYPE_CHECKING:
     from ._core import RenderSettings, _Region, _Splats
 
-FORMAT = 3
+FORMAT = 3  # of the files of parts
 
 
 @dataclass(frozen=True, eq=False)
 class FilmPart:
     """Sums over some samples of a region of the film: Session.expose returns them, Session.image_of adds them up.
 
-    region: column and row of its first pixel, width and height; None: the whole film, for splatted light. first:
-    index of the first sample; spp: samples per pixel from there on. pixels, layers: (height, width) structured arrays
-    of sums over the samples; None: not collected. splats: fixed-point sums of each kind of splatted light (ghosts,
-    starbursts, lamps by light tracing). stats: seconds, and numbers of rays.
+    region: column and row of its first pixel, width and height; None: the whole film, for splatted light.
+    first: index of the first sample. spp: number of samples per pixel from there on.
+    pixels, layers: (height, width) structured arrays of sums over the samples; None: not collected.
+    splats: fixed-point sums of each kind of splatted light (ghosts, starbursts, lamps by light tracing).
+    stats: seconds, and numbers of rays, by the names of RenderStats.
     """
 
     region: _Region | None
@@ -44,7 +45,7 @@ class FilmPart:
         if self.region is not None and not (
             len(self.region) == 4 and all(isinstance(n, int | np.integer) and n >= 0 for n in self.region)
         ):
-            raise InputError("the region of a part is (column, row, width, height), whole numbers from 0 on")
+            raise InputError("the region of a part must be (column, row, width, height), whole numbers of 0 or more")
         shape = None if self.region is None else (self.region[3], self.region[2])
         for name, dtype in (("pixels", _core._PIXEL_SUM), ("layers", _core._LAYER_SUM)):
             sums = getattr(self, name)
@@ -52,17 +53,17 @@ class FilmPart:
                 raise InputError(f"the {name} of a part must be sums of its region's pixels")
         for number in (self.first, self.spp):
             if isinstance(number, bool) or not isinstance(number, int | np.integer) or not 0 <= number < 1 << 32:
-                raise InputError("a part has samples from a number on, both of which are 0 or more")
+                raise InputError("first and spp of a part must be whole numbers of 0 or more")
         if not all(isinstance(n, float | int) and 0 <= n < math.inf for n in self.stats.values()):
-            raise InputError("the stats of a part must be finite numbers, none below 0")
+            raise InputError("the stats of a part must be finite numbers of 0 or more")
         if not all(_is_splat(light) for light in self.splats):
-            raise InputError("the splats of a part must be sums of (films, H, W, 3) whole numbers for each light")
+            raise InputError("the splats of a part must be arrays (films, H, W, 3) of int64 for each kind of light")
 
     def __setstate__(self, state: Any) -> None:
         set_checked_state(self, state, lambda made: made.packed())
 
     def __eq__(self, other: object) -> bool:
-        """True if regions, samples and sums are equal; stats are not compared."""
+        """Returns True if regions, samples and sums are equal; stats are not compared."""
         if not isinstance(other, FilmPart):
             return NotImplemented
         about, others = self._about(), other._about()
@@ -112,6 +113,7 @@ class FilmPart:
             raise InputError(f"{os.fspath(path)}: this is no part of a film, or damaged") from None
 
     def _about(self) -> dict[str, Any]:
+        """Returns the description in the archive: everything but the arrays."""
         return {
             "format": FORMAT,
             "region": None if self.region is None else list(self.region),
@@ -134,7 +136,10 @@ class FilmPart:
 
 
 def _joined(arrays: Mapping[str, np.ndarray], name: str, dtype: np.dtype[np.void]) -> np.ndarray | None:
-    """Inverse of _arrays. Raises ValueError if a field is missing or has another shape or dtype."""
+    """Returns the structured array that _arrays has separated into fields; None if there is none.
+
+    Raises ValueError if a field is missing or has another shape or dtype.
+    """
     found = {key.removeprefix(f"{name}."): array for key, array in arrays.items() if key.startswith(f"{name}.")}
     if not found:
         return None
@@ -150,6 +155,7 @@ def _joined(arrays: Mapping[str, np.ndarray], name: str, dtype: np.dtype[np.void
 
 
 def _is_splat(light: Any) -> bool:
+    """Returns True for a valid dict of splatted light (_Splats)."""
     if not isinstance(light, dict) or light.keys() != {"light", "sums", "blocks", "units_per_lux"}:
         return False
     sums, blocks, units = light["sums"], light["blocks"], light["units_per_lux"]
@@ -196,11 +202,11 @@ class AccumulatedFilm:
             self.stats[name] = self.stats.get(name, 0) + value
 
     def exposure(self, settings: RenderSettings, exposure_time_s: float) -> np.ndarray:
-        """(H, W, 3) float32, lux seconds. settings: those of the samples."""
+        """Returns the exposure, (H, W, 3) float32, in lux seconds. settings: those of the samples."""
         return _core._developed_exposure(self.pixels, self.splats, settings, exposure_time_s)
 
     def traced_exposure(self, exposure_time_s: float) -> np.ndarray:
-        """Exposure of the splatted light, (H, W, 3) lux seconds; (0, W, 3) if there are no splats."""
+        """Returns the exposure of the splatted light, (H, W, 3) in lux seconds; (0, W, 3) if there are no splats."""
         return _core._traced_exposure(self.splats, exposure_time_s)
 
     def _add_splats(self, part: FilmPart) -> None:
@@ -225,6 +231,7 @@ def _add_fields(sums: np.ndarray, more: np.ndarray) -> None:
         sums[name] += more[name]
 
 
+# Stats of a film without samples, with all names.
 NO_STATS = dict.fromkeys(
     ("seconds", "lens_seconds", "scene_seconds", "other_seconds", "sampled_rays", "passed_rays", "scene_rays"), 0.0
 )

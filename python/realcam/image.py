@@ -23,12 +23,15 @@ class Image:
 
     pixels: (H, W, 3) float32, exposure in lux seconds, linear Rec. 709, row 0 at the top.
     depth: (H, W) float32, metres along the camera's axis from the film; inf where no sample hit a surface. Mean over
-    the samples that hit one, weighted by their contribution to the exposure.
-    layers: the requested layers by name (docs/layers.md), arrays of (H, W), (H, W, 2) or (H, W, 3), float32, and uint32
-    for ids and sample counts. object_names, material_names: indexed by the ids in the layers; empty without id layers.
-    settings: those of the render, with "auto" replaced by what was planned; plan: Plan.summary, empty if nothing was
-    planned. denoiser: name and version if the pixels were denoised, otherwise empty. spp: with the setting "auto" the
-    mean over the pixels. shortfall: a sentence if the noise exceeds its limit, otherwise empty.
+      the samples that hit one, weighted by their contribution to the exposure.
+    camera: the camera, with the planned model if it was planned. spp: samples per pixel; with the setting "auto", the
+      mean over the pixels. seed: of the random numbers. stats: render time and numbers of rays.
+    layers: the requested layers by name (docs/layers.md), arrays of shape (H, W), (H, W, 2) or (H, W, 3), float32, and
+      uint32 for ids and sample counts. object_names, material_names: indexed by the ids in the layers; empty without id
+      layers.
+    settings: those of the render, with "auto" replaced by the planned values. plan: Plan.summary; empty without a plan.
+    denoiser: name and version if the pixels were denoised, otherwise empty. shortfall: a sentence if the noise exceeds
+      its limit, otherwise empty.
     """
 
     pixels: np.ndarray
@@ -52,14 +55,14 @@ class Image:
         pixels, depth = self.pixels, self.depth
         is_picture = isinstance(pixels, np.ndarray) and pixels.dtype.kind == "f" and pixels.shape[2:] == (3,)
         if not is_picture or pixels.size == 0:
-            raise InputError("pixels must be an array of (H, W, 3) floats")
+            raise InputError("pixels must be an array of floats of shape (H, W, 3)")
         if not isinstance(depth, np.ndarray) or depth.dtype.kind != "f" or depth.shape != pixels.shape[:2]:
-            raise InputError("depth must be an array of (H, W) floats, for the pixels' H and W")
+            raise InputError("depth must be an array of floats of shape (H, W), with H and W of the pixels")
         if not isinstance(self.layers, Mapping):
             raise InputError("layers must be a mapping of names to arrays")
         for name, layer in self.layers.items():
             if not isinstance(layer, np.ndarray) or layer.shape[:2] != depth.shape:
-                raise InputError(f"the layer {name!r:.40} must be an array for the pixels' H and W")
+                raise InputError(f"the layer {name!r:.40} must be an array with H and W of the pixels")
         if not isinstance(self.camera, Camera):
             raise InputError("camera must be a Camera")
         for names in (self.object_names, self.material_names):
@@ -70,7 +73,7 @@ class Image:
         set_checked_state(self, state, type(self).metadata)
 
     def __eq__(self, other: object) -> bool:
-        """True if pixels, layers, camera and metadata are equal; stats are not compared."""
+        """Returns True if pixels, layers, camera and metadata are equal; stats are not compared."""
         if not isinstance(other, Image):
             return NotImplemented
         mine, others = self._arrays(), other._arrays()
@@ -100,17 +103,18 @@ class Image:
         return notebook.picture_png(self.pixels, self.camera.iso)
 
     def developed(self, tone: str = "film", iso: float | None = None) -> np.ndarray:
-        """(H, W, 3) uint8 sRGB at the camera's sensitivity, or another one.
+        """Returns the picture as 8-bit sRGB values, (H, W, 3) uint8.
 
-        10 / iso lux seconds become middle grey (118). tone: "film" (soft highlights) or "linear" (clipped).
+        iso: sensitivity; None: the camera's. An exposure of 10 / iso lux seconds becomes middle grey (118). tone:
+        "film" (soft highlights) or "linear" (clipped). Raises InputError.
         """
         return _core.develop(self.pixels, self.camera.iso if iso is None else iso, tone)
 
     def denoised(self, *, device: str = "auto") -> Image:
-        """Denoised by Intel's Open Image Denoise: a picture to look at, not to measure.
+        """Returns the picture denoised by Intel's Open Image Denoise: for viewing, not for measurements.
 
-        Needs the layers albedo, normal and traced_light, and the extra realcam[denoise] (docs/denoising.md). Only the
-        pixels change; the layers variance and dual_pixel_*, which describe or contain the noise, are dropped.
+        Requires the layers albedo, normal and traced_light, and the extra realcam[denoise] (docs/denoising.md). Only
+        the pixels change; the layers variance and dual_pixel_*, which describe or contain the noise, are dropped.
         device: "auto" (a GPU if the denoiser can use one), "cpu", "cuda" or "cuda:1". Raises InputError if a layer or
         the extra is missing; DeviceError.
         """
@@ -131,7 +135,7 @@ class Image:
         _core._write_picture(system_name(path), self, tone == "film")
 
     def metadata(self) -> dict[str, str]:
-        """Names ("realcam:...") and values of the metadata in picture files."""
+        """Returns the metadata of picture files: values by their names "realcam:..."."""
         entries: dict[str, str] = _core._metadata(
             self.camera, self.settings, self.spp, self.seed, self.plan, self.denoiser
         )

@@ -1,4 +1,4 @@
-"""Picture files, read and written by the same C++ code as in the executable."""
+"""Reading and writing of image files, by the same C++ code as in the executable."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from . import _core
 from .files import system_name
 
+# Suffixes of files with 8-bit pictures.
 DEVELOPED = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
 
 

@@ -13,10 +13,10 @@ from typing import Any
 
 
 def installed_file(package: str, pattern: str) -> str:
-    """Returns the path of a file of an installed package; empty if there is none.
+    """Returns the path of a file of an installed package that matches a glob pattern; empty if there is none.
 
-    Packages are looked for where Python installs them and beside this one. `sys.path` would begin with the current
-    folder, whose libraries must not be loaded because somebody works in it.
+    Packages are searched for where Python installs them and beside this one, but not on `sys.path`: it may begin with
+    the current folder, whose libraries must not be loaded.
     """
     folders = [*site.getsitepackages(), str(Path(__file__).resolve().parents[1])]
     if site.ENABLE_USER_SITE:
@@ -49,8 +49,8 @@ def imported(package: str, extra: str) -> Any:
 
 
 def advised(error: ImportError) -> ImportError:
-    """Returns the error of a failed import of the extension with a message that says what to do, if a remedy is known;
-    otherwise unchanged."""
+    """Returns the error of a failed import of the extension, with a message that tells what to do if a remedy is
+    known."""
     text = str(error)
     if re.search(r"version `(GLIBC|GLIBCXX|CXXABI)_[\d.]+' not found", text):
         has = " ".join(platform.libc_ver()) or "another C library"

@@ -13,6 +13,7 @@ from ._core import FieldOfView, Lens
 
 
 def json_text(value: Any) -> str:
+    """Returns a value as indented JSON; see json_value."""
     return json.dumps(json_value(value), indent=2, ensure_ascii=False)
 
 

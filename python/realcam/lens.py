@@ -1,4 +1,4 @@
-"""Shorthands for stops and mirrors."""
+"""Functions that create surfaces of a lens: the stop and mirrors."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from ._core import Coating, Surface
 
 
 def Stop(*, clear_semi_diameter_mm: float, thickness_mm: float = 0.0) -> Surface:  # noqa: N802
-    """The aperture stop: a plane whose opening the f-number ring changes. A lens has exactly one."""
+    """Returns a Surface that is the aperture stop: a plane with the diaphragm. A lens must have exactly one.
+
+    clear_semi_diameter_mm: radius of the fully open diaphragm. thickness_mm: distance to the next surface.
+    """
     return Surface(type="stop", clear_semi_diameter_mm=clear_semi_diameter_mm, thickness_mm=thickness_mm)
 
 
@@ -23,7 +26,8 @@ def Mirror(  # noqa: N802
     inner_semi_diameter_mm: float = 0.0,
     coating: str | Coating = "unknown",
 ) -> Surface:
-    """A mirror. Thicknesses after it are negative until the next mirror."""
+    """Returns a Surface that is a mirror; arguments as for Surface(). Thicknesses are negative up to the next
+    mirror."""
     return Surface(
         type="mirror",
         radius_of_curvature_mm=radius_of_curvature_mm,

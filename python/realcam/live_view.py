@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 
 class LiveView:
-    """Renders a scene with a camera that changes with every frame, on one device: "auto" (a GPU if there is one),
-    "cpu", "cuda" or "cuda:1".
+    """Renders a scene with a camera that may change with every frame.
+
+    device: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:1".
+    settings, also as keywords: those of render, but by default without effects and with max_bounces 1: planning
+      ("auto") takes longer than a frame; rc.plan returns what it would choose. Only image() has layers.
 
     Only changed data is prepared again; samples accumulate while the scene and the camera's lens, film and pose stay
-    the same. On a GPU the accumulation restarts at the second frame after a change of the lens. Frames are pipelined:
-    up to three are in flight on a GPU, one on the CPU. Not thread-safe, except for cancel().
-
-    settings, also as keywords, are those of render, but the defaults are no effects and max_bounces 1: planning
-    ("auto") takes longer than a frame, and rc.plan says what it would choose. Only image() has layers. Raises
-    InputError; DeviceError if the device does not exist.
+    the same. On a GPU the accumulation restarts again at the second frame after a change of the lens, because the first
+    one uses an approximate pupil. Frames are pipelined: up to three are in flight on a GPU, one on the CPU. Not
+    thread-safe, except for cancel(). Raises InputError; DeviceError if the device does not exist.
     """
 
     def __init__(
@@ -55,12 +55,12 @@ class LiveView:
         """Starts a frame with spp more samples per pixel, by default 1.
 
         The frame is developed with the camera's exposure time and ISO and a tone curve (see Image.developed).
-        settings, also as keywords: of this frame, in place of the view's. Returns a LiveFrame at once, or, if too many
-        are in flight, when the oldest is done. Raises KeyboardInterrupt on Ctrl-C.
+        settings, also as keywords: settings of this frame; None: those of the view. Returns a LiveFrame at once, or, if
+        too many are in flight, when the oldest is done. Raises KeyboardInterrupt on Ctrl-C.
         """
-        now = settings_of(settings, {"spp": 1, **changes, "layers": ()}, self.settings)
-        frame = self._core.shoot(camera, now, tone)
-        self._last = camera, now
+        frame_settings = settings_of(settings, {"spp": 1, **changes, "layers": ()}, self.settings)
+        frame = self._core.shoot(camera, frame_settings, tone)
+        self._last = camera, frame_settings
         return frame
 
     def show(self, scene: Scene) -> None:
@@ -72,16 +72,17 @@ class LiveView:
         self._core.show(scene)
 
     def picture(self) -> tuple[DeviceArray | NDArray[np.float32], DeviceArray | NDArray[np.float32]]:
-        """The picture accumulated up to the last frame, as two arrays of float32.
+        """Returns the picture accumulated up to the last frame, as two arrays of float32.
 
-        Exposure (H, W, 3) in lux seconds and depth (H, W) in metres, as in Image: DeviceArrays in GPU memory, or numpy
-        arrays for a view on the CPU. Waits for the frames in flight. Raises InputError before the first frame,
-        Cancelled if another thread cancels them meanwhile, and KeyboardInterrupt on Ctrl-C.
+        They are the exposure (H, W, 3) in lux seconds and depth (H, W) in metres, as in Image: DeviceArrays in GPU
+        memory, or numpy arrays for a view on the CPU. Waits for the frames in flight. Raises InputError before the
+        first frame, Cancelled if another thread cancels them meanwhile, and KeyboardInterrupt on Ctrl-C.
         """
         return self._core.picture()
 
     def image(self, layers: str | Iterable[str] = ()) -> Image:
-        """picture() as an Image, with these layers. Raises what picture raises."""
+        """Returns the picture accumulated up to the last frame as an Image with these layers. Raises what picture()
+        raises."""
         if self._last is None:
             raise InputError("there is no picture yet; shoot() takes one")
         camera, settings = self._last

@@ -16,7 +16,7 @@ LONGEST_SIDE_PX = 1200
 
 
 def picture_png(exposure: NDArray[np.float32], iso: float) -> bytes:
-    """PNG of a developed exposure, (H, W, 3) lux seconds, reduced to at most LONGEST_SIDE_PX."""
+    """Returns a PNG file of an exposure, (H, W, 3) lux seconds, developed and reduced to at most LONGEST_SIDE_PX."""
     import matplotlib.image
 
     step = -(-max(exposure.shape) // LONGEST_SIDE_PX)
@@ -28,6 +28,7 @@ def picture_png(exposure: NDArray[np.float32], iso: float) -> bytes:
 
 
 def plan_html(plan: Plan) -> str:
+    """Returns a plan as HTML, with a table of its decisions."""
     rows = [
         (
             decision.effect,
@@ -44,6 +45,8 @@ def plan_html(plan: Plan) -> str:
 
 
 def table_html(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
+    """Returns an HTML table. head: titles of the columns."""
+
     def line(cells: Sequence[str], tag: str) -> str:
         return "".join(f'<{tag} style="text-align: left">{html.escape(cell)}</{tag}>' for cell in cells)
 

@@ -22,7 +22,7 @@ def percent_text(share: float, digits: int = 2, *, signed: bool = False) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """ "1 sample", "10 000 samples"."""
+    """Formats a count with its noun: "1 sample", "10 000 samples"."""
     return f"{number_text(count)} {noun}{'' if count == 1 else 's'}"
 
 

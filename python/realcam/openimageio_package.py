@@ -22,10 +22,11 @@ except ImportError as error:
     ) from None
 
 
+# File suffixes by OpenImageIO's names of formats.
 _SUFFIXES = {"jpeg": ".jpg", "openexr": ".exr", "tiff": ".tif", "bmp": ".bmp", "targa": ".tga", "webp": ".webp"}
-_LARGEST_NUMBER = 2**24
-_MOST_PARTS = 256
-_opening = threading.Lock()
+_LARGEST_NUMBER = 2**24  # above it OpenImageIO, which computes in float32, would round integers
+_MAX_PARTS = 256  # kMostParts in cpp/image_io/openimageio.hpp
+_opening = threading.Lock()  # guards OpenImageIO's global option try_all_readers
 
 
 def _text(get: Callable[[], str]) -> str:
@@ -46,15 +47,15 @@ def _opened(format: str, name: str) -> Any:
     OpenImageIO takes the format from the suffix and then tries all others, some of which crash on broken files. So the
     file is opened through a temporary link with the right suffix.
     """
-    wishes = oiio.ImageSpec()
-    wishes.attribute("oiio:UnassociatedAlpha", 1)
+    configuration = oiio.ImageSpec()
+    configuration.attribute("oiio:UnassociatedAlpha", 1)
     with _opening, tempfile.TemporaryDirectory(prefix="realcam-") as folder:
         link = Path(folder, "picture" + _SUFFIXES[format])
         link.symlink_to(name)
         tries_all = oiio.get_int_attribute("try_all_readers", 1)
         oiio.attribute("try_all_readers", 0)
         try:
-            opened = oiio.ImageInput.open(str(link), wishes)
+            opened = oiio.ImageInput.open(str(link), configuration)
         finally:
             oiio.attribute("try_all_readers", tries_all)
         if opened is None:
@@ -73,8 +74,8 @@ class Decoder:
         self._input = _opened(format, name)
         self._opening = _text(self._input.geterror)  # errors of a broken header that OpenImageIO has accepted
         self._specs: list[Any] = []
-        most = _MOST_PARTS if format == "openexr" else 1  # WebP cannot go back
-        while len(self._specs) < most and self._input.seek_subimage(len(self._specs), 0):
+        max_parts = _MAX_PARTS if format == "openexr" else 1  # other formats have one; WebP cannot go back
+        while len(self._specs) < max_parts and self._input.seek_subimage(len(self._specs), 0):
             self._specs.append(self._input.spec())
         end = _text(self._input.geterror)  # the error that says that there is no further part
         if not self._specs:
@@ -82,7 +83,7 @@ class Decoder:
 
     @property
     def headers(self) -> list[dict[str, Any]]:
-        """The members of EncodedHeader, for each part of the file."""
+        """Headers of all parts of the file, with the members of EncodedHeader (cpp/image_io/openimageio.hpp)."""
         return [self._header(spec) for spec in self._specs]
 
     @staticmethod
@@ -107,19 +108,25 @@ class Decoder:
     def read(
         self, part: int, first: int, end: int, first_channel: int, end_channel: int, format: str
     ) -> tuple[np.ndarray | None, str]:
-        """Channels of rows of a part's data window, or None, and OpenImageIO's error message."""
+        """Returns rows `first` to `end` of some channels of a part's data window, or None if they cannot be read, and
+        OpenImageIO's error message. format: numpy type of the result."""
         spec, channels = self._specs[part], (first_channel, end_channel)
-        begin, below = spec.y + first, spec.y + end
+        begin_row, end_row = spec.y + first, spec.y + end
         if spec.tile_width > 0:
             columns = (spec.x, spec.x + spec.width)
-            pixels = self._input.read_tiles(part, 0, *columns, begin, below, spec.z, spec.z + 1, *channels, format)
+            pixels = self._input.read_tiles(
+                part, 0, *columns, begin_row, end_row, spec.z, spec.z + 1, *channels, format
+            )
         else:
-            pixels = self._input.read_scanlines(part, 0, begin, below, spec.z, *channels, format)
+            pixels = self._input.read_scanlines(part, 0, begin_row, end_row, spec.z, *channels, format)
         return pixels, self._opening + _text(self._input.geterror)
 
 
 class Encoder:
-    """A picture file that is being written. Raises OSError, with the reason, if it cannot be."""
+    """A picture file that is being written. Raises OSError, with the reason, if it cannot be written.
+
+    channels: (name, True for uint32 and False for float32) of each channel; empty: RGB as uint8.
+    """
 
     def __init__(
         self,
@@ -165,4 +172,5 @@ class Encoder:
         return self._output.write_scanlines(first, end, 0, pixels), _text(self._output.geterror)
 
     def close(self) -> tuple[bool, str]:
+        """Completes the file. Returns success and error message."""
         return self._output.close(), _text(self._output.geterror)

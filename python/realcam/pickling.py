@@ -17,9 +17,10 @@ FORMAT = _core._STATE_FORMAT
 
 
 def restored(kind: str, state_format: int, version: str, state: Any) -> Any:
-    """Restores a pickled object.
+    """Restores a pickled object of the extension.
 
-    Raises InputError if the state is damaged, or if it is in the format of another version of realcam.
+    kind: name of its class. state_format, version: of the realcam that pickled it. Raises InputError if the state is
+    damaged, or if it is in the format of another version of realcam.
     """
     made_by = version if isinstance(version, str) and len(version) <= 20 and version.isprintable() else "?"
     type_ = getattr(_core, kind, None) if isinstance(kind, str) else None
@@ -67,7 +68,10 @@ def described(value: Any, buffers: list[np.ndarray]) -> Any:
 
 
 def from_description(description: Any, buffer: np.ndarray, kind: str) -> Any:
-    """Inverse of described(), for a value of this kind. buffer: the concatenated buffers, uint8. Raises InputError."""
+    """Returns the value that described() has described; this is its inverse.
+
+    kind: expected kind of the value. buffer: the concatenated buffers, uint8. Raises InputError.
+    """
 
     def state_of(item: Any) -> Any:
         if isinstance(item, list):
@@ -92,7 +96,7 @@ def from_description(description: Any, buffer: np.ndarray, kind: str) -> Any:
 
 
 def set_checked_state(value: Any, state: Any, check: Callable[[Any], object]) -> None:
-    """Implements `__setstate__` of a frozen dataclass: validates the fields by __init__ and `check`.
+    """Implements `__setstate__` of a frozen dataclass: validates the fields by __init__ and by check(object).
 
     Raises InputError. State that is not a field, such as a cached property, is ignored.
     """
@@ -112,6 +116,6 @@ def set_checked_state(value: Any, state: Any, check: Callable[[Any], object]) ->
 
 
 def same_arrays(one: Any, other: Any) -> bool:
-    """True if two arrays have the same dtype, shape and values, with NaN equal to NaN."""
+    """Returns True if two arrays have the same dtype, shape and values, with NaN equal to NaN."""
     a, b = np.asarray(one), np.asarray(other)
     return a.dtype == b.dtype and a.shape == b.shape and bool(np.array_equal(a, b, equal_nan=a.dtype.kind in "fc"))

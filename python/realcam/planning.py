@@ -25,27 +25,28 @@ def plan(
     times: bool = False,
     **changes: Unpack[_SettingWords],
 ) -> Plan:
-    """Decides which effects and which camera model a picture needs, with the magnitude of each effect.
+    """Decides which effects and which camera model a picture requires, with the magnitude of each effect.
 
     Magnitudes come from rays through the lens, closed forms and a small picture of the scene: in pixels of the film, or
     in 8-bit values of the developed picture. An effect below its threshold is left out.
     settings, also as keywords, as in plan(scene, camera, quality="draft"): those of render. Effects that are named are
     kept; those named with a "-" in front are left out. A camera model other than "full" is kept.
-    times: also measure the render time that each effect adds on this device, which takes some tenths of a second each.
+    times: True: also measures the render time that each effect adds on this device, which takes some tenths of a second
+    for each effect.
 
     Raises InputError; its subclass NothingToPlan if the camera sees neither an object nor light;
     SceneFileError, DeviceError; KeyboardInterrupt on Ctrl-C.
     """
     if "effects" in changes:
         changes["effects"] = _with_auto(changes["effects"])
-    wanted = settings_of(settings, changes)
-    if "auto" not in wanted.effects:
-        wanted = wanted.with_(effects=_with_auto(wanted.effects))
-    return _core._plan(scene, camera, wanted, device, times)
+    requested = settings_of(settings, changes)
+    if "auto" not in requested.effects:
+        requested = requested.with_(effects=_with_auto(requested.effects))
+    return _core._plan(scene, camera, requested, device, times)
 
 
 def _with_auto(effects: str | Iterable[str] | None) -> tuple[str, ...]:
-    """Adds "auto" in front of the named effects, which leaves all others to the planner."""
+    """Returns the named effects with "auto" in front, which leaves all others to the planner."""
     is_list = isinstance(effects, Iterable) and not isinstance(effects, str)
     return ("auto", *effects) if is_list else ("auto",) if effects is None else ("auto", effects)  # type: ignore
 
@@ -69,7 +70,10 @@ def resolved(scene: Scene, camera: Camera, settings: RenderSettings, device: str
 def resolved_film(
     scene: Scene, cameras: Sequence[Camera], settings: RenderSettings, device: str, stacklevel: int
 ) -> Resolved:
-    """Resolves "auto" once for all frames of a film. The returned camera is the first frame's."""
+    """Resolves "auto" once for all frames of a video. The returned camera is that of the first frame.
+
+    cameras: those of the first frame and of other frames. stacklevel: see resolved().
+    """
     camera, *others = cameras
     model, settings, summary, warning = _core._resolve_film(scene, camera, others, settings, device)
     if warning:

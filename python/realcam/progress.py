@@ -11,7 +11,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 
 @contextmanager
 def progress_bar(title: str, is_shown: bool = True) -> Iterator[Callable[[float], bool]]:
-    """Yields a function to call with the fraction done, 0 to 1."""
+    """Yields a function to call with the finished fraction, 0 to 1, which returns True."""
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not (is_shown and console.is_terminal)) as bars:

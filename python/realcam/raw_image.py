@@ -18,17 +18,18 @@ from ._core import Film, InputError, Sensor
 from .image import Image
 from .pickling import set_checked_state
 
-# Range of exposure times, s, and of ISO values.
-LEAST_DIAL, MOST_DIAL = 1e-37, 1e38
+# Range of exposure times in s, of ISO values and of pixel pitches in um: positive numbers that float32 represents.
+MIN_POSITIVE, MAX_POSITIVE = 1e-37, 1e38
 
 
 @dataclass(frozen=True, eq=False)
 class RawImage:
     """Raw digital numbers of a sensor, linear in light, with the data for their development.
 
-    mosaic: (H, W) uint16, one digital number per pixel, row 0 at the top; sensor.color_filter_array states its filter.
-    iso, exposure_time_s, temperature_c, seed, serial: those of the exposure. illuminant: as in Image; empty: D65.
-    pixel_pitch_um: of the sensor. image_metadata: metadata of the exposed Image.
+    mosaic: (H, W) uint16, one digital number per pixel, row 0 at the top; sensor.color_filter_array tells its filter.
+    iso, exposure_time_s, temperature_c, seed, serial: arguments of the exposure, see Sensor.expose.
+    illuminant: spectrum of the light, as in Image; empty: D65. pixel_pitch_um: pixel pitch of the sensor.
+    image_metadata: metadata of the exposed Image.
     """
 
     mosaic: np.ndarray
@@ -47,14 +48,14 @@ class RawImage:
     def __post_init__(self) -> None:
         mosaic = self.mosaic
         if not isinstance(mosaic, np.ndarray) or mosaic.dtype != np.uint16 or mosaic.ndim != 2 or mosaic.size == 0:
-            raise InputError("mosaic must be an array of (H, W) numbers of the type uint16")
+            raise InputError("mosaic must be an array of uint16 of shape (H, W)")
         if not isinstance(self.sensor, Sensor):
             raise InputError("sensor must be a Sensor")
         if not isinstance(self.image_metadata, Mapping):
             raise InputError("image_metadata must be a mapping of names to texts")
         for name in ("iso", "exposure_time_s", "pixel_pitch_um"):
             number = getattr(self, name)
-            if not (isinstance(number, Real) and 1e-37 <= float(number) <= 1e38):
+            if not (isinstance(number, Real) and MIN_POSITIVE <= float(number) <= MAX_POSITIVE):
                 raise InputError(f"{name} must be a positive number, from 1e-37 to 1e38")
 
     def __setstate__(self, state: Any) -> None:
@@ -76,27 +77,28 @@ class RawImage:
 
     @property
     def color_filter_array(self) -> str:
-        """The filters of the 2 x 2 pixels at the top left, row by row, as "RGGB"; "" for a monochrome sensor."""
+        """Filters of the 2 x 2 pixels at the upper left, row by row, such as "RGGB"; "" for a monochrome sensor."""
         return self.sensor.color_filter_array
 
     @cached_property
     def gain_dn_per_e(self) -> float:
-        """Overall system gain at this ISO, digital numbers per electron."""
+        """Overall system gain at this ISO, in digital numbers per electron."""
         return _core._sensor_gain(self.sensor, self.pixel_pitch_um, self.iso)
 
     @property
     def black_level_dn(self) -> float:
-        """The digital number without light."""
+        """Digital number of a pixel without light."""
         return self.sensor.black_level_dn
 
     @property
     def white_level_dn(self) -> int:
-        """The digital number of a full pixel, or the converter's largest if that is smaller."""
-        full = self.black_level_dn + self.gain_dn_per_e * self.sensor.full_well_e
-        return int(min(full, 2**self.sensor.adc_bits - 1))
+        """Digital number of a saturated pixel, or the converter's largest if that is smaller."""
+        saturated_dn = self.black_level_dn + self.gain_dn_per_e * self.sensor.full_well_e
+        return int(min(saturated_dn, 2**self.sensor.adc_bits - 1))
 
     @cached_property
     def _color(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """White (3,), and the matrices camera_from_xyz, film_from_balanced and d50_from_balanced (3, 3)."""
         if not self.color_filter_array:
             raise InputError(f"the sensor {self.sensor.name!r} has no colour filters")
         white, camera_from_xyz, film_from_balanced, d50_from_balanced = _core._sensor_color(
@@ -120,14 +122,15 @@ class RawImage:
         return self._color[3]
 
     def exposure(self, demosaic: str = "menon") -> np.ndarray:
-        """(H, W, 3) float32: the film's exposure estimated from the mosaic, lux seconds, linear Rec. 709, with noise.
+        """Returns the film's exposure estimated from the mosaic, with noise: (H, W, 3) float32, lux seconds, linear
+        Rec. 709.
 
         All channels are clipped at the same white, so that saturated highlights are neutral. demosaic: "menon" (Menon
         2007), "malvar" (2004) or "bilinear", by colour-demosaicing, which the extra realcam[raw] provides. A monochrome
         sensor has equal channels. Noise may be negative. Raises InputError.
         """
         light = (self.mosaic.astype(np.float32) - np.float32(self.black_level_dn)) / np.float32(self.gain_dn_per_e)
-        full = (self.white_level_dn - self.black_level_dn) / self.gain_dn_per_e
+        saturation_e = (self.white_level_dn - self.black_level_dn) / self.gain_dn_per_e
         per_lux_s = self.sensor.electrons_per_um2(self.illuminant or "D65").sum(axis=1) * self.pixel_pitch_um**2
         if not self.color_filter_array:
             return np.repeat((light / np.float32(per_lux_s[0]))[..., None], 3, axis=2)
@@ -135,12 +138,12 @@ class RawImage:
         for position, color in enumerate(self.color_filter_array):
             light[position // 2 :: 2, position % 2 :: 2] /= np.float32(per_lux_s["RGB".index(color)])
         balanced = demosaicing.demosaiced(light, self.color_filter_array, demosaic)
-        np.minimum(balanced, np.float32(full / per_lux_s.max()), out=balanced)
+        np.minimum(balanced, np.float32(saturation_e / per_lux_s.max()), out=balanced)
         result: np.ndarray = balanced @ film_from_balanced.T
         return result
 
     def developed(self, tone: str = "linear", iso: float | None = None, demosaic: str = "menon") -> np.ndarray:
-        """(H, W, 3) uint8 sRGB, as from Image.developed.
+        """Returns the picture as 8-bit sRGB values, (H, W, 3) uint8, like Image.developed.
 
         tone: "linear" (clipped at white, half a stop below saturation) or "film", whose shoulder expects brighter
         highlights than a sensor records. iso: None is that of the exposure; another value scales the brightness.
@@ -149,9 +152,11 @@ class RawImage:
         return _core.develop(self.exposure(demosaic), self.iso if iso is None else iso, tone)
 
     def save(self, path: str | os.PathLike[str], tone: str = "linear", demosaic: str = "menon") -> None:
-        """Writes .dng (the mosaic, for raw developers), .npy (the same as an array), developed .png, .jpg, .tif, .webp.
+        """Writes the mosaic as .dng (for raw developers) or .npy, or the developed picture as .png, .jpg, .tif or
+        .webp.
 
-        DNG, PNG, JPEG and TIFF hold the metadata. Raises ImageFileError and InputError; no half-written file is left.
+        tone, demosaic: see RawImage.developed. DNG, PNG, JPEG and TIFF contain the metadata. Raises ImageFileError and
+        InputError; no half-written file is left.
         """
         suffix = os.path.splitext(os.fsdecode(path))[1].lower()  # noqa: PTH122 - bytes are paths, too
         if suffix == ".dng":
@@ -187,7 +192,8 @@ class RawImage:
         )
 
     def metadata(self) -> dict[str, str]:
-        """Names ("realcam:...") and values of the metadata in files: the picture's, and the sensor's."""
+        """Returns the metadata in files, values by their names "realcam:...": those of the picture and of the
+        sensor."""
         entries = dict(self.image_metadata)
         entries["realcam:iso"] = f"{self.iso:.9g}"
         entries["realcam:sensor"] = self.sensor.name
@@ -210,7 +216,7 @@ def exposed(
     temperature_c: float | None,
     threads: int,
 ) -> RawImage:
-    """Sensor.expose. Raises InputError."""
+    """Implements Sensor.expose; see there for the arguments. Raises InputError."""
     if not isinstance(image, Image):
         raise InputError(f"image must be a realcam.Image; it is {image!r:.60}")
     camera = image.camera
@@ -247,17 +253,22 @@ def exposed_film(
     metadata: Mapping[str, str] | None = None,
     stacklevel: int = 2,
 ) -> RawImage:
-    """Sensor.expose for an exposure without an Image, (H, W, 3) lux seconds, as read from a file. Raises InputError."""
-    if not LEAST_DIAL <= exposure_time_s <= MOST_DIAL:
+    """Exposes a sensor like Sensor.expose, but to an exposure without an Image, such as one read from a file.
+
+    pixels: exposure (H, W, 3) in lux seconds. film: its size and pixels. exit_pupil_distance_mm: distance from the exit
+    pupil to the film, which determines the angles of incidence. metadata: of the picture. stacklevel: of warnings.
+    Raises InputError.
+    """
+    if not MIN_POSITIVE <= exposure_time_s <= MAX_POSITIVE:
         raise InputError(f"the exposure time must be a number of seconds from 1e-37 to 1e38, not {exposure_time_s:g}")
-    if not LEAST_DIAL <= iso <= MOST_DIAL:
+    if not MIN_POSITIVE <= iso <= MAX_POSITIVE:
         raise InputError(f"the ISO number must be positive, from 1e-37 to 1e38, not {iso:g}")
     height, width = np.shape(pixels)[:2]
-    dark = int(np.isnan(pixels).any(axis=-1).sum())
-    if dark == width * height:
+    nan_count = int(np.isnan(pixels).any(axis=-1).sum())
+    if nan_count == width * height:
         raise InputError("the film holds no exposure: all of its pixels are NaN")
-    if dark > 0:
-        warnings.warn(f"{dark} pixels of the film are NaN: no light is taken for them", stacklevel=stacklevel)
+    if nan_count > 0:
+        warnings.warn(f"{nan_count} pixels of the film are NaN: no light is taken for them", stacklevel=stacklevel)
     columns, rows = sensor.resolution or (width, height)
     if width > columns or height > rows:
         raise InputError(
@@ -302,6 +313,6 @@ def exposed_film(
 
 
 def _exit_pupil_distance_mm(image: Image) -> float:
-    """Distance from the exit pupil to the film, by first-order optics."""
+    """Returns the distance from the exit pupil to the film in mm, to first order."""
     lens: Any = image.camera.lens
     return abs(float(lens.film_position_mm - lens.first_order().exit_pupil_position_mm))

@@ -1,4 +1,4 @@
-"""Rendering a picture."""
+"""The function render(), which renders one picture."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ def warn_of_no_light(scene: Scene) -> None:
     if isinstance(scene, Scene) and not scene.has_light:
         warnings.warn(
             "the scene has no light, so that its picture is black; scene.with_daylight(camera), with_environment, "
-            "with_sun or with_point_light brings some",
+            "with_sun or with_point_light adds some",
             stacklevel=3,
         )
 
 
 def warn_of_effects(camera: Camera, settings: RenderSettings) -> None:
-    """Warns of effects that the lens cannot give. The warning names the line of the caller's caller."""
+    """Warns of effects that the lens cannot show. The warning names the line of the caller's caller."""
     if isinstance(camera, Camera):
         for notice in _core._effect_notices(camera.lens, settings):
             warnings.warn(notice, stacklevel=3)
@@ -62,20 +62,20 @@ def render(
     if on_stop not in ("raise", "keep"):
         raise InputError(f'on_stop must be "raise" or "keep"; it is {on_stop!r:.60}')
     warn_of_no_light(scene)
-    camera, wanted, plan = resolved(scene, camera, settings_of(settings, changes), device, stacklevel=2)
-    warn_of_effects(camera, wanted)
+    camera, final_settings, plan = resolved(scene, camera, settings_of(settings, changes), device, stacklevel=2)
+    warn_of_effects(camera, final_settings)
 
-    def taken(callback: ProgressCallback | None) -> Image:
-        picture = _core._render(scene, camera, wanted, device, callback, on_stop == "keep")
-        return Image(**picture, camera=camera, seed=wanted.seed, settings=wanted, plan=plan)
+    def take_image(callback: ProgressCallback | None) -> Image:
+        picture = _core._render(scene, camera, final_settings, device, callback, on_stop == "keep")
+        return Image(**picture, camera=camera, seed=final_settings.seed, settings=final_settings, plan=plan)
 
     if progress is True:
         from .progress import progress_bar
 
         with progress_bar("photographing") as bar:
-            image = taken(bar)
+            image = take_image(bar)
     else:
-        image = taken(progress or None)
+        image = take_image(progress or None)
     if image.shortfall:
         warnings.warn(image.shortfall, stacklevel=2)
     return image

@@ -11,28 +11,28 @@ def root_between(
 ) -> float:
     """Returns a root between two arguments whose values have opposite signs, to `tolerance` in the argument.
 
-    Regula falsi in the Illinois form (M. Dowell and P. Jarratt, BIT 11, 168, 1971): the value of an end that is
-    retained twice is halved, so that the bracket shrinks from both sides. `at_high`, and values on that side, may be
-    nan outside the function's domain: then the bracket is bisected, and the result may be the end of the domain. The
-    function is defined at the returned argument.
+    at_low, at_high: values of the function at low and high. Method: regula falsi in the Illinois form (M. Dowell and
+    P. Jarratt, BIT 11, 168, 1971): the value of an end that is retained twice is halved, so that the bracket shrinks
+    from both sides. `at_high`, and values on that side, may be nan outside the function's domain: then the bracket is
+    bisected, and the result may be the end of the domain. The function is defined at the returned argument.
     """
-    stayed = 0  # 1: low was retained in the last step, -1: high
+    retained_end = 0  # in the last step: 1 for low, -1 for high
     for _ in range(200):
         if abs(high - low) <= tolerance or at_low == 0:
             return low
-        share = 0.5 if math.isnan(at_high) else at_low / (at_low - at_high)
-        middle = low + share * (high - low)
-        if middle in (low, high):  # an end is the root to machine precision
+        fraction = 0.5 if math.isnan(at_high) else at_low / (at_low - at_high)
+        x = low + fraction * (high - low)
+        if x in (low, high):  # an end is the root to machine precision
             return high if abs(at_high) < abs(at_low) else low
-        value = function(middle)
+        value = function(x)
         if value == 0:
-            return middle
+            return x
         if (value > 0) == (at_low > 0) and not math.isnan(value):
-            low, at_low = middle, value
-            at_high *= 0.5 if stayed == -1 else 1
-            stayed = -1
+            low, at_low = x, value
+            at_high *= 0.5 if retained_end == -1 else 1
+            retained_end = -1
         else:
-            high, at_high = middle, value
-            at_low *= 0.5 if stayed == 1 else 1
-            stayed = 1
+            high, at_high = x, value
+            at_low *= 0.5 if retained_end == 1 else 1
+            retained_end = 1
     return low

@@ -1,4 +1,4 @@
-"""Progressive rendering: a picture that accumulates samples."""
+"""Progressive rendering: the class Session, a picture that accumulates samples."""
 
 from __future__ import annotations
 
@@ -27,9 +27,10 @@ if TYPE_CHECKING:
 class ReachedNoise:
     """Result of rendering to a noise limit.
 
-    noise: of the noisiest tile, in the requested measure. is_reached: False if the limit was missed, and also if lamps
-    may be missing because only paths from the film sample them and few would hit them. spp_wanted: samples that the
-    noisiest pixels need for the limit. shortfall: a sentence if the limit was not reached.
+    noise: noise of the noisiest tile, in the requested measure. is_reached: False if the limit was missed, and also if
+    lamps may be missing because only paths from the film sample them and few would hit them. spp_wanted: samples per
+    pixel that the noisiest tile needs for the limit. shortfall: a sentence if the limit was not reached, otherwise
+    empty.
     """
 
     noise: float
@@ -45,11 +46,11 @@ class Session:
     while not good_enough(session.image()):
         session.add(16)
 
-    settings, also as keywords, as in Session(scene, camera, max_bounces=4), and device are those of render. Repeated
-    calls of add() take the same samples as one render of their total. Effects "auto" are planned for each new picture,
-    and again if set() changes the scene or the view, which takes some hundredths of a second: name the effects for
+    settings, also as keywords, as in Session(scene, camera, max_bounces=4), and device: as for render. Repeated calls
+    of add() take the same samples as one render of their total. Effects "auto" are planned for each new picture, and
+    again if set() changes the scene or the view, which takes some hundredths of a second: name the effects for
     pictures that change all the time.
-    Calls from several threads are serialised, and cancel() ends the running one. Raises InputError, SceneFileError and
+    Calls from several threads are serialised; cancel() ends the running one. Raises InputError, SceneFileError and
     DeviceError, after which the picture starts from scratch. Warns of a scene without light.
     """
 
@@ -83,7 +84,7 @@ class Session:
 
     @property
     def settings(self) -> RenderSettings:
-        """The picture's settings, with "auto" replaced by what was planned."""
+        """The picture's settings, with "auto" replaced by the planned values."""
         return self._resolved.settings
 
     effects = setting("effects")
@@ -96,40 +97,40 @@ class Session:
     def set(
         self, *, scene: Scene | None = None, camera: Camera | None = None, settings: RenderSettings | None = None
     ) -> None:
-        """Changes the scene, camera or settings; None keeps the last one.
+        """Changes the scene, camera or settings; None: unchanged.
 
         Only changed data is prepared again: of a scene from moved(), the instances' transforms; of a camera with the
         same lens and film, its pose. A change begins a new picture, except that another exposure time or ISO only
         develops the samples again. Raises KeyboardInterrupt on Ctrl-C.
         """
         new_scene = self.scene if scene is None else scene
-        asked = self._requested_camera if camera is None else camera
-        wanted = self._requested_settings if settings is None else settings_of(settings, {})
-        if ("auto" in wanted.effects or wanted.max_bounces == "auto") and isinstance(asked, Camera):
-            if asked.model == self.camera.model:  # derived from self.camera, whose model was planned
-                asked = asked.replace(model=self._requested_camera.model)
+        new_camera = self._requested_camera if camera is None else camera
+        new_settings = self._requested_settings if settings is None else settings_of(settings, {})
+        if ("auto" in new_settings.effects or new_settings.max_bounces == "auto") and isinstance(new_camera, Camera):
+            if new_camera.model == self.camera.model:  # derived from self.camera, whose model was planned
+                new_camera = new_camera.replace(model=self._requested_camera.model)
             if scene is None and settings is None:
-                now = self._resolved_for(new_scene, asked)
+                planned = self._resolved_for(new_scene, new_camera)
             else:
-                now = resolved(new_scene, asked, wanted, self._device, stacklevel=2)
+                planned = resolved(new_scene, new_camera, new_settings, self._device, stacklevel=2)
         elif settings is None:
-            now = self._resolved._replace(camera=asked)
+            planned = self._resolved._replace(camera=new_camera)
         else:
-            now = Resolved(asked, wanted, "")
-        self._core.set(new_scene, now.camera, now.settings)
-        self._requested_settings, self._requested_camera, self._resolved = wanted, asked, now
+            planned = Resolved(new_camera, new_settings, "")
+        self._core.set(new_scene, planned.camera, planned.settings)
+        self._requested_settings, self._requested_camera, self._resolved = new_settings, new_camera, planned
         if scene is not None:
             warn_of_no_light(scene)
 
-    def _resolved_for(self, scene: Scene, asked: Camera) -> Resolved:
-        """Plans again, unless only exposure time or ISO have changed."""
+    def _resolved_for(self, scene: Scene, new_camera: Camera) -> Resolved:
+        """Returns a new plan, or the last one if only exposure time or ISO of the camera have changed."""
 
-        def exposed_alike(camera: Camera) -> Camera:
-            return camera.replace(exposure_time_s=asked.exposure_time_s, iso=asked.iso)
+        def with_new_exposure(camera: Camera) -> Camera:
+            return camera.replace(exposure_time_s=new_camera.exposure_time_s, iso=new_camera.iso)
 
-        if asked != exposed_alike(self._requested_camera):
-            return self._plan(scene, asked)
-        return self._resolved._replace(camera=exposed_alike(self._resolved.camera))
+        if new_camera != with_new_exposure(self._requested_camera):
+            return self._plan(scene, new_camera)
+        return self._resolved._replace(camera=with_new_exposure(self._resolved.camera))
 
     def add(self, spp: int = 1) -> None:
         """Takes spp more samples per pixel, 1 to 16777216, and returns when they are done.
@@ -147,16 +148,16 @@ class Session:
         seconds: float | None = None,
         max_spp: int | None = None,
     ) -> ReachedNoise:
-        """Takes samples of pixels above the noise limit until no pixel exceeds it; the arguments are settings.
+        """Takes samples of pixels above the noise limit until no pixel exceeds it.
 
-        Omitted arguments have the values of the session's settings. Raises what add raises.
+        Arguments as for RenderSettings; None: the value of the session's settings. Raises what add() raises.
         """
-        words = {"noise": noise, "noise_codes": noise_codes, "seconds": seconds, "max_spp": max_spp}
-        said: Any = {name: value for name, value in words.items() if value is not None}
-        return ReachedNoise(**self._core.add_until(self._requested_settings.with_(spp="auto", **said)))
+        arguments = {"noise": noise, "noise_codes": noise_codes, "seconds": seconds, "max_spp": max_spp}
+        changes: Any = {name: value for name, value in arguments.items() if value is not None}
+        return ReachedNoise(**self._core.add_until(self._requested_settings.with_(spp="auto", **changes)))
 
     def image(self) -> Image:
-        """The accumulated picture, as render returns it; spp is the mean over the pixels, rounded.
+        """Returns the accumulated picture, as render does; its spp is the mean over the pixels, rounded.
 
         Layers include all samples that were begun, even after a cancellation. A pixel without a sample is black, at
         depth inf. Raises InputError before the first sample.
@@ -168,7 +169,7 @@ class Session:
     def expose(
         self, region: _Region, first: int = 0, spp: int = 256, counts: NDArray[np.uint32] | None = None
     ) -> FilmPart:
-        """Renders some samples of a region of the film, independently of this session's picture.
+        """Renders some samples of a region of the film, apart from this session's picture.
 
         region: column and row of its first pixel, from the upper left corner, its width and its height. first, spp:
         index of the first sample, and samples per pixel, at most 256. counts: (height, width), individual sample counts
@@ -183,19 +184,19 @@ class Session:
         return FilmPart(_region(region), first, spp, found["pixels"], layers, stats=found["stats"])
 
     def expose_layers(self, region: _Region, first: int = 0, spp: int = 256) -> FilmPart:
-        """Only the layers of expose() without counts. Raises what expose raises."""
+        """Renders only the layers of expose(), for all samples. Raises what expose() raises."""
         return FilmPart(_region(region), first, spp, layers=self._core.see_region(region, first, spp))
 
     def expose_traced_light(self, first: int = 0, spp: int = 256) -> FilmPart:
-        """Ghosts and other light that is traced separately and splatted on the film, not sampled per pixel.
+        """Renders ghosts and other light that is traced separately and splatted on the film, not sampled per pixel.
 
-        It covers the whole film. A picture needs it for all of its samples, or not at all if part.splats is empty,
-        which a part of 0 samples already tells. Raises InputError, and what add raises.
+        The part covers the whole film. A picture requires it for all of its samples, or not at all if part.splats is
+        empty, which a part of 0 samples already shows. Raises InputError, and what add() raises.
         """
         return FilmPart(None, first, spp, splats=self._core.expose_splats(first, spp))
 
     def image_of(self, parts: Iterable[FilmPart]) -> Image:
-        """The picture assembled from all parts, each given once, in the order of their samples.
+        """Returns the picture assembled from all parts; each must occur once, in the order of their samples.
 
         Raises InputError for parts of another picture.
         """

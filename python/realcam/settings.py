@@ -1,4 +1,4 @@
-"""Render settings, as one value and as keywords."""
+"""Render settings that functions accept both as a RenderSettings and as keywords."""
 
 from __future__ import annotations
 

@@ -20,12 +20,12 @@ from .settings import setting
 
 
 def is_shot_file(path: str | os.PathLike[str]) -> bool:
-    """True for a shot file, false for a scene file: the rule of `realcam render`."""
+    """Returns True for a shot file and False for a scene file, by the rule of `realcam render`."""
     return Path(os.fsdecode(path)).suffix == ".toml"
 
 
 def text_of_shot_of(scene: str) -> str:
-    """Text of a minimal shot file, which only names a scene file."""
+    """Returns the text of a minimal shot file, which only names a scene file."""
     return f"format = 1\nscene = {toml_value('scene', scene)}\n"
 
 
@@ -57,12 +57,13 @@ def toml_value(name: str, value: Any) -> str:
 class Shot:
     """The content of a shot file: `rc.Shot.load("demo.toml").render().save("demo.png")`.
 
-    tone: "film" or "linear", the tone curve for Image.save. Settings are also attributes of the shot: shot.spp is
-    shot.settings.spp.
+    scene, camera: what is photographed. `camera` has the state of the keys when its shutter opens, without shake.
+    settings: render settings, which are also attributes of the shot: shot.spp is shot.settings.spp.
+    tone: tone curve for Image.save, "film" or "linear".
     keys: keyframes of focus, f-number and other lens and exposure settings, which override the camera's, and of cuts
-    to other lenses; `shake`: of a hand-held camera. `camera` is in the state of the keys when its shutter opens,
-    without shake. iso_follows_s: time in s over which the automatic ISO of a film is smoothed; None: fixed ISO.
-    Raises InputError if the camera cannot be in the state of a key.
+      to other lenses. shake: shake of a hand-held camera; None: there is none.
+    iso_follows_s: time constant in s with which the automatic ISO of a video is smoothed; None: fixed ISO.
+    Raises InputError if the camera cannot be set to the state of a key.
     """
 
     scene: Scene
@@ -80,7 +81,7 @@ class Shot:
         if follows_s is not None and not 0 <= follows_s < math.inf:
             raise InputError("iso_follows_s must be a number of seconds, 0 or more, or None")
         if follows_s is not None and any(key.iso is not None for key in self.keys):
-            raise InputError("iso_follows_s and the iso of keys exclude each other")
+            raise InputError("iso_follows_s cannot be combined with the iso of keys")
 
     spp, noise, noise_codes, seconds, max_spp = map(setting, ("spp", "noise", "noise_codes", "seconds", "max_spp"))
     seed, max_bounces, transport = map(setting, ("seed", "max_bounces", "transport"))
@@ -104,7 +105,7 @@ class Shot:
     def frames(
         self, numbers: Sequence[int], *, frames_per_second: float = 24.0, name: str = "frame", device: str = "auto"
     ) -> dict[str, Shot]:
-        """Shots of the frames of a film, by their names, as "frame.0001", each at the time of its frame.
+        """Returns shots of the frames of a video, by their names such as "frame.0001", each at the time of its frame.
 
         The shutter of frame 1 opens at the same time as the shot's; frame n opens (n - 1) / frames_per_second later.
         Each frame has its own seed, a hash of the shot's seed and the frame number, so that noise is not static.
@@ -115,14 +116,14 @@ class Shot:
         """
         numbers = list(numbers)
         if not numbers or min(numbers) < 0 or not 0 < frames_per_second < math.inf:
-            raise InputError("a film wants frames with numbers from 0 on, and more than 0 of them in a second")
+            raise InputError("frame numbers must be 0 or more, at least one of them, and frames_per_second positive")
 
         def camera_of(number: int) -> Camera:
             return self.camera_at(self.camera.shutter_opens_s + (number - 1) / frames_per_second)
 
         cameras = {number: camera_of(number) for number in numbers}
-        some = _core._frames_to_plan(numbers, self.camera, self.keys, frames_per_second)
-        planned = resolved_film(self.scene, [cameras[n] for n in some], self.settings, device, stacklevel=2)
+        to_plan = _core._frames_to_plan(numbers, self.camera, self.keys, frames_per_second)
+        planned = resolved_film(self.scene, [cameras[n] for n in to_plan], self.settings, device, stacklevel=2)
         settings = planned.settings
         cameras = {number: camera.replace(model=planned.camera.model) for number, camera in cameras.items()}
         if self.iso_follows_s is not None:
@@ -138,8 +139,8 @@ class Shot:
         }
 
     def camera_at(self, time_s: float) -> Camera:
-        """The camera for a picture whose shutter opens at a time: in the state of the keys, and with the shake of that
-        exposure. Raises InputError if the lens cannot be set that way."""
+        """Returns the camera for a picture whose shutter opens at a time, in s: in the state of the keys, and with the
+        shake of that exposure. Raises InputError if the lens cannot be set so."""
         return _core._camera_at(self.camera, self.keys, self.shake, time_s)
 
     def render(
@@ -150,9 +151,9 @@ class Shot:
         progress: bool | ProgressCallback = False,
         on_stop: str = "raise",
     ) -> Image:
-        """Renders the picture: realcam.render with the shot's settings, at the time its shutter opens.
+        """Renders the picture with the shot's settings, at the time when its shutter opens.
 
-        threads: None is settings.threads.
+        threads: number of CPU threads; None: settings.threads. Other arguments and errors: those of realcam.render.
         """
         camera = self.camera if self.shake is None else self.camera_at(self.camera.shutter_opens_s)
         settings = self.settings if threads is None else self.settings.with_(threads=threads)
@@ -160,15 +161,16 @@ class Shot:
 
 
 def shot_with_words(path: str | os.PathLike[str], words: Mapping[str, str], device: str) -> Shot:
-    """Shot.load with values as texts of the command line, by their keys; messages name the command's options."""
-    read, _ = _core._read_shot(bundled_file(path, (".toml",)), "", words, None, None, False, device)
-    return Shot(**read)
+    """Returns Shot.load(path) with values as texts of the command line, by shot key; messages name the options."""
+    fields, _ = _core._read_shot(bundled_file(path, (".toml",)), "", words, None, None, False, device)
+    return Shot(**fields)
 
 
 def _read_shot(
     path: str | os.PathLike[str] | Scene, device: str, values: Mapping[str, Any], *, denoises: bool
 ) -> tuple[Shot, bool]:
-    """Returns the shot, and True if neither samples nor a noise limit are specified."""
+    """Returns the shot, and True if neither spp nor a noise limit is specified. denoises: the picture will be
+    denoised."""
     scene = path if isinstance(path, Scene) else None
     lens = values.get("lens") if isinstance(values.get("lens"), Lens) else None
     changes = {name: value for name, value in values.items() if value is not None}
@@ -176,8 +178,8 @@ def _read_shot(
         changes["lens"] = "in memory"
     text = "".join(f"{toml_value(name, name)} = {toml_value(name, value)}\n" for name, value in changes.items())
     named = "the shot" if isinstance(path, Scene) else bundled_file(path, (".toml",))
-    read, is_unsaid = _core._read_shot(named, text, {}, scene, lens, denoises, device)
-    return Shot(**read), is_unsaid
+    fields, has_default_sampling = _core._read_shot(named, text, {}, scene, lens, denoises, device)
+    return Shot(**fields), has_default_sampling
 
 
 def photograph(
@@ -197,22 +199,23 @@ def photograph(
     realcam[denoise] is installed; the command does the same for all files but .exr.
     device and progress: those of render. Raises what Shot.load, render and Image.denoised raise.
     """
-    shot, is_unsaid = _read_shot(scene, device, values, denoises=bool(denoise))
-    may_denoise = denoise or (denoise is None and is_unsaid and denoiser.is_installed())
-    wanted = shot.settings.layers
+    shot, has_default_sampling = _read_shot(scene, device, values, denoises=bool(denoise))
+    may_denoise = denoise or (denoise is None and has_default_sampling and denoiser.is_installed())
+    requested_layers = shot.settings.layers
     if may_denoise:
-        shot = replace(shot, settings=shot.settings.with_(layers={*wanted, *denoiser.GUIDES}))
+        shot = replace(shot, settings=shot.settings.with_(layers={*requested_layers, *denoiser.GUIDES}))
     image = shot.render(device=device, progress=progress)
     if denoise or (may_denoise and image.shortfall):
         image = image.denoised(device=device)
-    layers = {name: layer for name, layer in image.layers.items() if name in wanted}
-    return replace(image, layers=layers, settings=image.settings.with_(layers=wanted))
+    layers = {name: layer for name, layer in image.layers.items() if name in requested_layers}
+    return replace(image, layers=layers, settings=image.settings.with_(layers=requested_layers))
 
 
 def _keys_as_text() -> str:
+    """Returns the list of all shot keys with their help, for docstrings."""
     return "\n".join(f"    {name}: {text[0].lower()}{text[1:]}" for name, *_, text in _core._shot_keys())
 
 
 for _function in (Shot.load.__func__, photograph):  # type: ignore[attr-defined]
     if _function.__doc__:  # python -OO has none
-        _function.__doc__ += f"\n    The keys, with what holds without them:\n\n{_keys_as_text()}\n"
+        _function.__doc__ += f"\n    Keys, with their defaults:\n\n{_keys_as_text()}\n"

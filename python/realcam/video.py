@@ -1,4 +1,4 @@
-"""Video files of 8-bit pictures. The commands in C++ call check_film and write_film."""
+"""Writing of video files. The commands in C++ call check_film and write_film."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def write_video(path: Path, frames: Iterable[np.ndarray], frames_per_second: flo
             size: tuple[int, ...] | None = None
             for frame in frames:
                 if size not in (None, frame.shape):
-                    raise InputError(f"{path}: the frames of a film must have the same size")
+                    raise InputError(f"{path}: the frames of a video must have the same size")
                 even = np.pad(frame, [(0, frame.shape[0] % 2), (0, frame.shape[1] % 2), (0, 0)], mode="edge")
                 if size is None:
                     size = frame.shape
@@ -53,13 +53,13 @@ def write_video(path: Path, frames: Iterable[np.ndarray], frames_per_second: flo
 
 
 def check_film(path: str) -> None:
-    """Raises InputError if PyAV is missing, and ImageFileError if the film cannot be written."""
+    """Raises InputError if PyAV is missing, and ImageFileError if the video file cannot be written."""
     imported("av", "video")
     check_target(path)
 
 
 def write_film(path: str, pictures: list[str], frames_per_second: float, keep_going: Callable[[], bool]) -> None:
-    """Writes a film from 8-bit picture files; see write_video. Raises Cancelled if keep_going() returns False."""
+    """Writes a video of 8-bit picture files; see write_video. Raises Cancelled if keep_going() returns False."""
 
     def frames() -> Iterator[np.ndarray]:
         av = imported("av", "video")

@@ -34,11 +34,11 @@ def _run_in_cpp(arguments: list[str]) -> int:
     if not hasattr(_core, "_run_command"):
         print("realcam: error: this build of realcam has no picture files, and no such command", file=sys.stderr)
         return 2
-    from realcam.cli.command_words import understood_in_cpp
+    from realcam.cli.command_words import normalised_for_cpp
     from realcam.installation import denoiser_library
 
     try:
-        words = understood_in_cpp(arguments)
+        words = normalised_for_cpp(arguments)
     except _core.InputError as error:
         print(f"realcam: error: {_core.one_line(str(error))}", file=sys.stderr)
         return 2

@@ -1,3 +1,5 @@
+// The Python classes Camera and Film.
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -23,10 +25,6 @@ using namespace py::literals;
 
 namespace {
 
-std::tuple<double, double, double> triple_of(Vec3d v) {
-    return {v.x, v.y, v.z};
-}
-
 CameraModel model_from(const std::string& name) {
     if (const auto model = shot::model_named(name)) return *model;
     throw InputError("unknown camera model \"" + name + "\"; expected pinhole, thin, mapped, thick or full");
@@ -45,7 +43,7 @@ Film changed_film(const Film& film, std::optional<double> width_mm, std::optiona
                      shift_mm.value_or(std::pair(film.shift_mm.x, film.shift_mm.y)));
 }
 
-/// Keyframe: (time_s, position, look_at) or (time_s, position, look_at, up).
+/// Keyframe of the pose: (time_s, position, look_at) or (time_s, position, look_at, up).
 using Key = std::variant<std::tuple<double, Triple, Triple>, std::tuple<double, Triple, Triple, Triple>>;
 
 std::vector<PoseKey> motion_from(const std::vector<Key>& keys) {
@@ -67,8 +65,8 @@ Typed<"tuple[tuple[float, tuple[float, float, float], tuple[float, float, float]
 keys_of(const Camera& camera) {
     py::list keys;
     for (const PoseKey& key : camera.motion)
-        keys.append(py::make_tuple(key.time_s, triple_of(key.pose.position_m), triple_of(key.pose.look_at_m),
-                                   triple_of(key.pose.up)));
+        keys.append(
+            py::make_tuple(key.time_s, triple(key.pose.position_m), triple(key.pose.look_at_m), triple(key.pose.up)));
     return py::tuple(keys);
 }
 
@@ -121,7 +119,7 @@ Typed<"FieldOfView"> field_of_view_deg(const Camera& camera) {
 std::optional<std::tuple<double, double, double>> pupil_position(const Camera& camera) {
     const std::optional<Vec3d> position = entrance_pupil_position_m(camera);
     if (!position) return std::nullopt;
-    return triple_of(*position);
+    return triple(*position);
 }
 
 std::string text_of(const Film& film) {
@@ -141,27 +139,33 @@ std::string text_of(const Camera& camera) {
 }
 
 void bind_film(py::module_& m) {
-    py::class_<Film> film(m, "Film", "The light-sensitive rectangle and its pixels.");
+    py::class_<Film> film(m, "Film", "The light-sensitive rectangle of a camera, and its pixels.");
     def_hashable_value(film);
     film.def(py::init(&make_film), "width_mm"_a = 36.0, "height_mm"_a = 24.0, "resolution"_a = std::pair(960, 640),
              "shift_mm"_a = std::pair(0.0, 0.0),
-             R"(resolution: (columns, rows). shift_mm: of the film's middle from the lens's axis, right and up as the
-picture shows it: a shift lens's, or the principal point of a sensor, whose pixel is principal_point.
-The lens, and Camera.position, stay where they are. Raises InputError.)")
-        .def_readonly("width_mm", &Film::width_mm)
-        .def_readonly("height_mm", &Film::height_mm)
-        .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); })
-        .def_property_readonly("shift_mm", [](const Film& f) { return std::pair(f.shift_mm.x, f.shift_mm.y); })
+             R"(width_mm, height_mm: size. resolution: (columns, rows) of pixels.
+shift_mm: (right, up), as in the developed picture: displacement of the film's centre from the lens's axis, as of a
+  shift lens, or of a sensor whose principal point is not its centre. Lens and Camera.position do not move.
+Raises InputError.)")
+        .def_readonly("width_mm", &Film::width_mm, "Width.")
+        .def_readonly("height_mm", &Film::height_mm, "Height.")
+        .def_property_readonly(
+            "resolution", [](const Film& f) { return std::pair(f.width, f.height); }, "(columns, rows) of pixels.")
+        .def_property_readonly(
+            "shift_mm", [](const Film& f) { return std::pair(f.shift_mm.x, f.shift_mm.y); },
+            "(right, up), displacement of the film's centre from the lens's axis.")
         .def_property_readonly(
             "principal_point",
             [](const Film& f) {
                 const Vec2<double> axis = f.pixel_of({0, 0});
                 return std::pair(axis.x, axis.y);
             },
-            "(column, row) at which the lens's axis meets the film, from the picture's upper left corner.")
+            "(column, row) at which the lens's axis intersects the film, in pixels from the picture's upper left "
+            "corner.")
         .def("replace", &changed_film, py::kw_only(), "width_mm"_a = py::none(), "height_mm"_a = py::none(),
              "resolution"_a = py::none(), "shift_mm"_a = py::none(),
-             "The film with some of what Film() takes changed. None stays.")
+             "Returns the film with some properties changed. Arguments as for Film(); None: unchanged. Raises "
+             "InputError.")
         .def("__repr__", [](const Film& f) { return text_of(f); });
 }
 
@@ -174,59 +178,73 @@ void bind_camera(py::module_& m) {
                                                     "module"_a = "realcam");
     py::class_<Camera> camera_class(
         m, "Camera",
-        R"(Lens, film, pose and exposure. position is the middle of the film (the sensor), in front of which the whole
-lens is: entrance_pupil_position_m says from where the scene is seen. Film(shift_mm=...) moves the film
-from there, and nothing else: film_centre_m is its middle then, and position and look_at stay on the
-lens's axis.)");
+        R"(Camera: lens, film, pose and exposure. Immutable. position is the centre of the unshifted film (the sensor);
+the lens lies in front of it, and the centre of perspective is entrance_pupil_position_m. Film(shift_mm=...) moves only
+the film, whose centre is film_centre_m; position and look_at stay on the lens's axis.)");
     def_hashable_value(camera_class);
     camera_class
         .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
              "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
              "model"_a = "full", "shutter_opens_s"_a = 0.0, "readout_time_s"_a = 0.0, "motion"_a = std::vector<Key>(),
-             R"(film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).
-model: "full" (every surface), "thick" (paraxial matrix), "mapped" (an ideal lens with
-the real one's distortion and vignetting), "thin" (ideal lens), "pinhole".
-shutter_opens_s: time in the scene at which the exposure begins. readout_time_s: of a rolling shutter,
-the time from the top row of pixels to the bottom one; each is exposed for exposure_time_s.
-motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in rising order of time, in
-place of position, look_at and up, which are then those at time 0. Between keys the camera moves evenly.
+             R"(lens: the Lens. film: a Film; None: that of the lens.
+position, look_at: (x, y, z) in metres, scene. up: the upward direction.
+exposure_time_s: exposure time of each pixel. iso: sensitivity (ISO 12232).
+model: camera model: "full" (ray trace through every surface), "thick" (paraxial matrix), "mapped" (an ideal lens with
+  the real one's distortion and vignetting), "thin" (ideal lens), or "pinhole".
+shutter_opens_s: time in the scene at which the exposure begins. readout_time_s: delay of a rolling shutter from the top
+  row of pixels to the bottom row.
+motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in increasing order of time, instead of
+  position, look_at and up, which then become those at time 0. Between keys the camera moves uniformly.
 Raises InputError.)")
         .def("replace", &changed_camera, py::kw_only(), "lens"_a = py::none(), "film"_a = py::none(),
              "position"_a = py::none(), "look_at"_a = py::none(), "up"_a = py::none(), "exposure_time_s"_a = py::none(),
              "iso"_a = py::none(), "model"_a = py::none(), "shutter_opens_s"_a = py::none(),
              "readout_time_s"_a = py::none(), "motion"_a = py::none(),
-             R"(The camera with some of what Camera() takes changed. None stays; so does the film with another lens
-(see Film.for_lens). A new position, look_at or up ends its motion. Raises InputError.)")
+             R"(Returns the camera with some properties changed. Arguments as for Camera(); None: unchanged. The film
+stays if the lens changes (see Film.for_lens). A new position, look_at or up removes the motion. Raises InputError.)")
         .def_property_readonly(
             "field_of_view_deg", &field_of_view_deg,
-            R"(FieldOfView(horizontal, vertical, diagonal): angles in front of the lens, in degrees, between what lands
-on opposite edges and corners of the film, by real rays at the lens's focus. Where the film is larger
-than the lens's image, between the edges of the image. Raises InputError where the camera's model has no
-place for its lens.)")
+            R"(FieldOfView(horizontal, vertical, diagonal): angles in degrees between the directions, in front of the
+lens, that are imaged on opposite edges and corners of the film, by real rays at the lens's focus. If the film is
+larger than the image circle, between the edges of the image. Raises InputError if the camera model cannot represent
+the lens.)")
         .def_property_readonly("entrance_pupil_position_m", &pupil_position,
-                               R"((x, y, z), scene: the middle of the paraxial entrance pupil, from where the camera
-sees the scene; turning about it shows no parallax. None where it lies at infinity.)")
+                               R"((x, y, z), scene: centre of the paraxial entrance pupil, which is the centre of
+perspective: a rotation about it causes no parallax. None if it lies at infinity.)")
         .def_property_readonly(
-            "film_centre_m", [](const Camera& c) { return triple_of(film_centre_m(c)); },
-            "(x, y, z), scene: the middle of the film, which is position but for Film(shift_mm=...).")
-        .def_readonly("lens", &Camera::lens)
-        .def_readonly("film", &Camera::film)
-        .def_property_readonly("position", [](const Camera& c) { return triple_of(c.pose.position_m); })
-        .def_property_readonly("look_at", [](const Camera& c) { return triple_of(c.pose.look_at_m); })
-        .def_property_readonly("up", [](const Camera& c) { return triple_of(c.pose.up); })
-        .def_readonly("exposure_time_s", &Camera::exposure_time_s)
-        .def_readonly("iso", &Camera::iso)
-        .def_property_readonly("shutter_opens_s", [](const Camera& c) { return c.shutter.opens_s; })
-        .def_property_readonly("readout_time_s", [](const Camera& c) { return c.shutter.readout_time_s; })
+            "film_centre_m", [](const Camera& c) { return triple(film_centre_m(c)); },
+            "(x, y, z), scene: centre of the film; differs from position by Film(shift_mm=...).")
+        .def_readonly("lens", &Camera::lens, "The Lens.")
+        .def_readonly("film", &Camera::film, "The Film.")
+        .def_property_readonly(
+            "position", [](const Camera& c) { return triple(c.pose.position_m); },
+            "(x, y, z) of the centre of the unshifted film, in metres, scene.")
+        .def_property_readonly(
+            "look_at", [](const Camera& c) { return triple(c.pose.look_at_m); },
+            "(x, y, z) of a point on the lens's axis in front of the camera, in metres, scene.")
+        .def_property_readonly(
+            "up", [](const Camera& c) { return triple(c.pose.up); }, "(x, y, z), the upward direction.")
+        .def_readonly("exposure_time_s", &Camera::exposure_time_s, "Exposure time of each pixel.")
+        .def_readonly("iso", &Camera::iso, "Sensitivity (ISO 12232).")
+        .def_property_readonly(
+            "shutter_opens_s", [](const Camera& c) { return c.shutter.opens_s; },
+            "Time in the scene at which the exposure begins.")
+        .def_property_readonly(
+            "readout_time_s", [](const Camera& c) { return c.shutter.readout_time_s; },
+            "Delay of a rolling shutter from the top row of pixels to the bottom row.")
         .def(
             "pose_at",
             [](const Camera& camera, double time_s) {
                 const Pose pose = pose_at(camera, time_s);
                 return py::make_tuple(triple(pose.position_m), triple(pose.look_at_m), triple(pose.up));
             },
-            "time_s"_a, "Where the motion has the camera at a time: position, look_at and up, in the scene, metres.")
-        .def_property_readonly("motion", &keys_of, "Keys (time_s, position, look_at, up); none: it stands still.")
-        .def_property_readonly("model", [](const Camera& c) { return io::name_of(c.model); })
+            "time_s"_a,
+            "Returns (position, look_at, up) at a time in seconds of the scene, interpolated between the motion's "
+            "keys.")
+        .def_property_readonly("motion", &keys_of,
+                               "Keys (time_s, position, look_at, up); empty if the camera does not move.")
+        .def_property_readonly(
+            "model", [](const Camera& c) { return io::name_of(c.model); }, "Name of the camera model, see Camera().")
         .def("__repr__", [](const Camera& c) { return text_of(c); });
     m.def(
         "pupil_setup",
@@ -237,8 +255,9 @@ sees the scene; turning about it shows no parallax. None where it lies at infini
             return Pupil(lens, film_radius_mm, std::move(tracer)).image_radius();
         },
         "lens"_a, "film_radius_mm"_a, "on_one_core"_a = false,
-        R"(Finds the lens's pupil for every film radius up to this one (what render does after any change of focus or
-stop). Returns the radius beyond which no light arrives, mm.)");
+        R"(Computes the table of a lens's exit pupil for film radii up to film_radius_mm, as rendering does after a
+change of focus or stop; for benchmarks. on_one_core: True: uses one CPU core only. Returns the film radius in mm
+beyond which no light arrives.)");
 }
 
 }  // namespace realcam::bindings

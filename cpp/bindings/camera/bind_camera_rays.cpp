@@ -1,3 +1,5 @@
+// Camera rays for other renderers: Camera.generate_rays and Camera.ray_chunks.
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -21,7 +23,7 @@ using namespace py::literals;
 
 namespace {
 
-/// Camera rays as numpy arrays or DeviceArrays.
+/// Camera rays as numpy arrays or DeviceArrays; see the docstrings.
 struct CameraRaysResult {
     Typed<"_Doubles"> origins_m;
     Typed<"_Floats"> directions, weights;
@@ -31,35 +33,37 @@ struct CameraRaysResult {
 };
 
 /// Shortest and longest wavelength in nm; std::nullopt: the lens's design wavelength.
-using GivenWavelengths = std::optional<std::pair<double, double>>;
+using WavelengthLimits = std::optional<std::pair<double, double>>;
 
 /// Validated request for camera rays.
-struct RayOrder {
+struct RayRequest {
     Camera camera;
     std::uint32_t spp, seed;
-    std::optional<int> gpu;
+    std::optional<int> gpu;  ///< number of the GPU that makes the rays; std::nullopt: the CPU
     LensEffects effects;
 
+    /// Range of all rays of the picture.
     RayRange all() const { return all_rays(camera.film.width, camera.film.height, spp); }
 };
 
-/// Effects that give each ray a wavelength of its own, drawn from the given range.
-LensEffects effects_for(const Camera& camera, const GivenWavelengths& given) {
+/// Returns effects with which each ray has a wavelength of its own, drawn uniformly between the limits. Throws
+/// InputError.
+LensEffects effects_for(const Camera& camera, const WavelengthLimits& limits) {
     LensEffects effects;
-    if (!given) return effects;
-    const auto [first, last] = *given;
+    if (!limits) return effects;
+    const auto [first, last] = *limits;
     // In this range polynomials reproduce the refractive indices of glasses to within 1e-5 (WavelengthVariable).
     if (!(first >= 300 && first <= last && last <= 2500))
         throw InputError("wavelengths_nm must be two numbers between 300 and 2500, the shorter one first");
     if (camera.model != CameraModel::full_lens)
-        throw InputError("wavelengths_nm needs the camera model \"full\": others know the lens at one wavelength");
+        throw InputError("wavelengths_nm requires the camera model \"full\"; the others use a single wavelength");
     effects.dispersion = true;
     effects.even_wavelengths = WavelengthRange{first, last};
     return effects;
 }
 
-RayOrder order_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device,
-                  const GivenWavelengths& wavelengths) {
+RayRequest request_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device,
+                      const WavelengthLimits& wavelengths) {
     if (spp < 1) throw InputError("spp must be at least 1");
     if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
     const std::optional<int> gpu = gpu_for_rays(device);
@@ -68,22 +72,22 @@ RayOrder order_of(const Camera& camera, int spp, std::int64_t seed, const std::s
             effects_for(camera, wavelengths)};
 }
 
-/// Must be called without the GIL.
-std::shared_ptr<const CameraSetup> setup_of(const RayOrder& order) {
+/// Returns the camera's set-up; reuses the last one if the camera is the same. Must be called without the GIL.
+std::shared_ptr<const CameraSetup> setup_of(const RayRequest& request) {
     static LastSetup last;
-    return last.make(order.camera, fast_pupil_tracer(), order.effects);
+    return last.make(request.camera, fast_pupil_tracer(), request.effects);
 }
 
-CameraRaysResult rays_on_gpu(const RayOrder& order, RayRange range) {
+CameraRaysResult rays_on_gpu(const RayRequest& request, RayRange range) {
     const CameraRayArrays rays = [&] {
         const Unlocked unlocked;
-        return generate_ray_arrays(*order.gpu, *setup_of(order), order.spp, order.seed, range);
+        return generate_ray_arrays(*request.gpu, *setup_of(request), request.spp, request.seed, range);
     }();
     return {py::cast(rays.origins_m), py::cast(rays.directions),     py::cast(rays.weights),
             py::cast(rays.pixels),    py::cast(rays.wavelengths_nm), py::cast(rays.times_s)};
 }
 
-CameraRaysResult rays_on_host(const RayOrder& order, RayRange range) {
+CameraRaysResult rays_on_host(const RayRequest& request, RayRange range) {
     constexpr std::int64_t kBetweenSignals = 1 << 20;  // about ten milliseconds of work
     const std::int64_t count = range.count;
     py::array_t<double> origins_m({count, std::int64_t{3}}), times_s(count);
@@ -91,39 +95,41 @@ CameraRaysResult rays_on_host(const RayOrder& order, RayRange range) {
     py::array_t<int> pixels(count);
     const CameraRayOutput out{origins_m.mutable_data(), directions.mutable_data(), weights.mutable_data(),
                               wavelengths_nm.mutable_data(), times_s.mutable_data()};
-    int* of = pixels.mutable_data();
+    int* to_pixels = pixels.mutable_data();
     for (std::int64_t done = 0; done < count; done += kBetweenSignals) {
         heed_signals();
         const Unlocked unlocked;
         const RayRange part = {range.first + done, std::min(kBetweenSignals, count - done)};
-        generate_camera_rays(*setup_of(order), order.spp, order.seed, part, out.from(done));
-        for (std::int64_t i = 0; i < part.count; ++i) of[done + i] = static_cast<int>((part.first + i) / order.spp);
+        generate_camera_rays(*setup_of(request), request.spp, request.seed, part, out.from(done));
+        for (std::int64_t i = 0; i < part.count; ++i)
+            to_pixels[done + i] = static_cast<int>((part.first + i) / request.spp);
     }
     return {origins_m, directions, weights, pixels, wavelengths_nm, times_s};
 }
 
-CameraRaysResult rays_of(const RayOrder& order, RayRange range) {
-    return order.gpu ? rays_on_gpu(order, range) : rays_on_host(order, range);
+CameraRaysResult rays_of(const RayRequest& request, RayRange range) {
+    return request.gpu ? rays_on_gpu(request, range) : rays_on_host(request, range);
 }
 
 /// Iterator over chunks of the camera's rays.
 struct RayChunks {
-    RayOrder order;
-    std::int64_t max_rays, next = 0;
+    RayRequest request;
+    std::int64_t max_rays;
+    std::int64_t next = 0;  ///< index of the first ray of the next chunk
 };
 
 RayChunks chunks_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device,
-                    const GivenWavelengths& wavelengths_nm, std::int64_t max_rays) {
+                    const WavelengthLimits& wavelengths_nm, std::int64_t max_rays) {
     if (max_rays < 1) throw InputError("max_rays must be at least 1");
-    return {order_of(camera, spp, seed, device, wavelengths_nm), max_rays};
+    return {request_of(camera, spp, seed, device, wavelengths_nm), max_rays};
 }
 
 CameraRaysResult next_chunk(RayChunks& chunks) {
-    const std::int64_t left = chunks.order.all().count - chunks.next;
+    const std::int64_t left = chunks.request.all().count - chunks.next;
     if (left <= 0) throw py::stop_iteration();
     const RayRange range = {chunks.next, std::min(left, chunks.max_rays)};
     chunks.next += range.count;
-    return rays_of(chunks.order, range);
+    return rays_of(chunks.request, range);
 }
 
 /// Returns an array with one row per wavelength cell: its first and last wavelength in nm, and the film's response
@@ -160,46 +166,54 @@ struct RestoredCheck<CameraRaysResult> {
 void bind_camera_rays(py::module_& m) {
     py::class_<CameraRaysResult> rays(
         m, "CameraRays",
-        R"(The rays of a camera, spp for each pixel, row by row from the top left. Arrays of numpy, or
-DeviceArrays.)");
+        R"(Rays of a camera in front of its lens, spp for each pixel, row by row from the upper left. numpy arrays or
+DeviceArrays. See Camera.generate_rays.)");
     def_result(rays);
-    rays.def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3) float64, scene.")
-        .def_readonly("directions", &CameraRaysResult::directions, "(N, 3) float32, unit, scene.")
+    rays.def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3) float64: origins, scene.")
+        .def_readonly("directions", &CameraRaysResult::directions, "(N, 3) float32: unit directions, scene.")
         .def_readonly(
             "weights", &CameraRaysResult::weights,
-            R"((N,) float32: irradiance on the film for unit radiance; the mean over a pixel's rays of weight times
-radiance is its irradiance. 0: the lens blocks the ray.)")
-        .def_readonly("pixels", &CameraRaysResult::pixels, "(N,) int32: row * columns + column.")
+            R"((N,) float32: irradiance on the film for unit radiance. The irradiance of a pixel is the mean over its
+rays of weight times radiance. 0 if the lens blocks the ray.)")
+        .def_readonly("pixels", &CameraRaysResult::pixels, "(N,) int32: index of the pixel, row * columns + column.")
         .def_readonly("wavelengths_nm", &CameraRaysResult::wavelengths_nm,
-                      "(N,) float32: for which the lens was traced.")
-        .def_readonly("times_s", &CameraRaysResult::times_s,
-                      "(N,) float64: when the shutter lets them through, stratified over each pixel's exposure.")
+                      "(N,) float32: wavelengths at which the lens was traced.")
+        .def_readonly(
+            "times_s", &CameraRaysResult::times_s,
+            "(N,) float64: times in the scene at which the rays pass the shutter, stratified over each pixel's "
+            "exposure.")
         .def("__repr__", [](const CameraRaysResult& r) {
             return "<realcam.CameraRays " + counted(py::len(r.weights), "ray") + '>';
         });
-    py::class_<RayChunks>(m, "RayChunks", "An iterator over a camera's rays: see Camera.ray_chunks.")
+    py::class_<RayChunks>(m, "RayChunks", "Iterator over chunks of a camera's rays, see Camera.ray_chunks.")
         .def("__iter__", [](const Typed<"Self">& self) { return self; })
-        .def("__next__", &next_chunk, "Returns CameraRays.");
+        .def("__next__", &next_chunk, "Returns the CameraRays of the next chunk.");
     py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
         .def(
             "generate_rays",
             [](const Camera& camera, int spp, std::int64_t seed, const std::string& device,
-               const GivenWavelengths& wavelengths_nm) {
-                const RayOrder order = order_of(camera, spp, seed, device, wavelengths_nm);
-                return rays_of(order, order.all());
+               const WavelengthLimits& wavelengths_nm) {
+                const RayRequest request = request_of(camera, spp, seed, device, wavelengths_nm);
+                return rays_of(request, request.all());
             },
             py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu", "wavelengths_nm"_a = py::none(),
-            R"(The rays that render would trace, for any other renderer, 56 bytes each. Returns CameraRays.
-wavelengths_nm: a pair (shortest, longest). Each ray has one of its own, drawn evenly between them, for
-which every glass has its own index: weight times spectral radiance times (longest - shortest) is the
-irradiance of that band. None: all have the lens's design wavelength.
-device: "cpu": arrays of numpy. "cuda", "cuda:1": DeviceArrays, made in that GPU's memory and left
-there. "auto": a GPU if there is one. Raises InputError, DeviceError.)")
+            R"(Generates the rays that realcam.render would trace, for use in another renderer; 56 bytes each.
+spp: rays per pixel. seed: of the random numbers.
+device: "cpu": the results are numpy arrays; "cuda", "cuda:1": they are DeviceArrays in that GPU's memory; "auto": a GPU
+  if there is one.
+wavelengths_nm: (shortest, longest), 300 to 2500: each ray has its own wavelength, drawn uniformly between them, with
+  the glasses' refractive indices there. The irradiance of the band is the mean of weight times spectral radiance, times
+  (longest - shortest). None: all rays have the lens's design wavelength.
+Returns CameraRays. Raises InputError and DeviceError.)")
         .def("ray_chunks", &chunks_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu",
              "wavelengths_nm"_a = py::none(), "max_rays"_a = std::int64_t{1} << 22,
-             R"(The same rays in pieces of at most max_rays, for pictures whose rays memory does not hold: an iterator
-over CameraRays. A piece may end between two rays of a pixel. Raises InputError, DeviceError.)");
-    m.def("_film_of_white", &film_of_white, "illuminant"_a);
+             R"(Returns an iterator over CameraRays with the rays of generate_rays in chunks of at most max_rays, for
+pictures whose rays do not fit into memory. A chunk may end between two rays of a pixel. Raises InputError and
+DeviceError.)");
+    m.def(
+        "_film_of_white", &film_of_white, "illuminant"_a,
+        R"(Internal. Returns one row per wavelength cell of an illuminant, (N, 5): its shortest and longest wavelength
+in nm, and the film's response (red, green, blue) to a white surface if all light has wavelengths of this cell.)");
 }
 
 }  // namespace realcam::bindings

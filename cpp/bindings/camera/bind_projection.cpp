@@ -1,3 +1,5 @@
+// Projection of scene points to pixels and of pixels to rays: Camera.project, Camera.ray, and the first-order pinhole.
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -28,29 +30,30 @@ ProjectionRay projection_ray_from(const std::string& name) {
 
 /// Returns the projection rays of a camera; caches the last result, because most programs use the same lens and film
 /// repeatedly. Must be called without the GIL.
-std::shared_ptr<const ProjectionRays> lines_of(const Camera& camera, ProjectionRay ray) {
-    struct Last {
+std::shared_ptr<const ProjectionRays> projection_rays_of(const Camera& camera, ProjectionRay ray) {
+    /// Properties of a camera on which its projection rays depend.
+    struct Key {
         LensSystem lens;
         double film_radius_mm;  ///< sufficient for a rotationally symmetric lens
-        Vec2<double> film_mm, film_shift_mm;
+        Vec2<double> film_mm, film_shift_mm;  ///< otherwise: size and shift of the film
         CameraModel model;
         ProjectionRay ray;
-        bool operator==(const Last&) const = default;
+        bool operator==(const Key&) const = default;
     };
     static std::mutex mutex;
-    static std::optional<Last> last;
-    static std::shared_ptr<const ProjectionRays> lines;
+    static std::optional<Key> cached_key;
+    static std::shared_ptr<const ProjectionRays> cached_rays;
     static LastSetup setups;
     validate(camera);
-    Last wanted = {camera.lens, camera.film.radius_mm(), {}, {}, camera.model, ray};
-    const bool is_round = has_radial_pupil(camera.lens) || !has_real_pupil(camera.model);
-    if (!is_round) {
-        wanted.film_mm = {camera.film.width_mm, camera.film.height_mm};
-        wanted.film_shift_mm = camera.film.shift_mm;
+    Key key = {camera.lens, camera.film.radius_mm(), {}, {}, camera.model, ray};
+    const bool is_radial = has_radial_pupil(camera.lens) || !has_real_pupil(camera.model);
+    if (!is_radial) {
+        key.film_mm = {camera.film.width_mm, camera.film.height_mm};
+        key.film_shift_mm = camera.film.shift_mm;
     }
     {
         const std::lock_guard lock(mutex);
-        if (last == wanted) return lines;
+        if (cached_key == key) return cached_rays;
     }
     // Without motion: the result depends only on lens and film, and a fast motion must not be refused.
     Camera still = camera;
@@ -63,22 +66,24 @@ std::shared_ptr<const ProjectionRays> lines_of(const Camera& camera, ProjectionR
     }
     const auto setup = setups.make(still, fast_pupil_tracer());
     const RayLoop loop = parallel_ray_loop(heed_signals);
-    std::shared_ptr<const ProjectionRays> made;
-    if (is_round)
-        made = std::make_shared<const RadialProjection>(*setup, ray, loop);
+    std::shared_ptr<const ProjectionRays> rays;
+    if (is_radial)
+        rays = std::make_shared<const RadialProjection>(*setup, ray, loop);
     else
-        made = std::make_shared<const ProjectionGrid>(*setup, ray, loop);
+        rays = std::make_shared<const ProjectionGrid>(*setup, ray, loop);
     const std::lock_guard lock(mutex);
-    last = std::move(wanted);
-    return lines = std::move(made);
+    cached_key = std::move(key);
+    return cached_rays = std::move(rays);
 }
 
+/// Returns the number of rows N. Throws InputError unless the array has the shape (N, columns); `what`: its name.
 std::int64_t row_count(const Doubles& array, int columns, const char* what) {
     if (array.ndim() != 2 || array.shape(1) != columns)
         throw InputError(std::string(what) + " must be an array of shape (N, " + std::to_string(columns) + ")");
     return array.shape(0);
 }
 
+/// See Camera.project.
 Typed<"NDArray[float64] | tuple[NDArray[float64], NDArray[int32]]"> project(const Camera& camera, const Doubles& points,
                                                                             const std::string& through,
                                                                             bool return_status) {
@@ -88,16 +93,16 @@ Typed<"NDArray[float64] | tuple[NDArray[float64], NDArray[int32]]"> project(cons
     py::array_t<int> status(count);
     const double* from = points.data();
     double* to = pixels.mutable_data();
-    int* states = status.mutable_data();
+    int* to_status = status.mutable_data();
     {
         const Unlocked unlocked;
-        const Projection projection(camera, lines_of(camera, ray));
+        const Projection projection(camera, projection_rays_of(camera, ray));
         parallel_ray_loop(heed_signals).for_all(static_cast<std::size_t>(count), [&](std::size_t i, std::size_t end) {
             for (; i < end; ++i) {
-                const ProjectedPoint at = projection.pixel_of({from[3 * i], from[3 * i + 1], from[3 * i + 2]});
-                to[2 * i] = at.pixel.x;
-                to[2 * i + 1] = at.pixel.y;
-                states[i] = static_cast<int>(at.status);
+                const ProjectedPoint point = projection.pixel_of({from[3 * i], from[3 * i + 1], from[3 * i + 2]});
+                to[2 * i] = point.pixel.x;
+                to[2 * i + 1] = point.pixel.y;
+                to_status[i] = static_cast<int>(point.status);
             }
         });
     }
@@ -105,24 +110,26 @@ Typed<"NDArray[float64] | tuple[NDArray[float64], NDArray[int32]]"> project(cons
     return py::make_tuple(pixels, status);
 }
 
+/// See Camera.ray.
 Typed<"tuple[NDArray[float64], ...]", py::tuple> rays_through(const Camera& camera, const Doubles& pixels,
                                                               const std::string& through, bool return_light) {
-    const ProjectionRay which = projection_ray_from(through);
+    const ProjectionRay kind = projection_ray_from(through);
     const std::int64_t count = row_count(pixels, 2, "pixels");
     py::array_t<double> origins({count, std::int64_t{3}}), directions({count, std::int64_t{3}}), light(count);
     const double* from = pixels.data();
-    double *at = origins.mutable_data(), *along = directions.mutable_data(), *shares = light.mutable_data();
+    double *to_origins = origins.mutable_data(), *to_directions = directions.mutable_data(),
+           *to_light = light.mutable_data();
     {
         const Unlocked unlocked;
-        const Projection projection(camera, lines_of(camera, which));
+        const Projection projection(camera, projection_rays_of(camera, kind));
         parallel_ray_loop(heed_signals).for_all(static_cast<std::size_t>(count), [&](std::size_t i, std::size_t end) {
             for (; i < end; ++i) {
                 const PixelRay ray = projection.ray_of({from[2 * i], from[2 * i + 1]});
                 const double numbers[] = {ray.origin_m.x,  ray.origin_m.y,  ray.origin_m.z,
                                           ray.direction.x, ray.direction.y, ray.direction.z};
-                std::copy(numbers, numbers + 3, at + 3 * i);
-                std::copy(numbers + 3, numbers + 6, along + 3 * i);
-                shares[i] = ray.light;
+                std::copy(numbers, numbers + 3, to_origins + 3 * i);
+                std::copy(numbers + 3, numbers + 6, to_directions + 3 * i);
+                to_light[i] = ray.light;
             }
         });
     }
@@ -130,12 +137,13 @@ Typed<"tuple[NDArray[float64], ...]", py::tuple> rays_through(const Camera& came
     return py::make_tuple(origins, directions);
 }
 
+/// Returns the pinhole camera that the lens is to first order. Throws InputError if there is none.
 PinholeCamera pinhole_of(const Camera& camera) {
     const std::optional<PinholeCamera> pinhole = pinhole_camera(camera, middle_pose(camera));
     if (!pinhole)
         throw InputError(
             "lens \"" + camera.lens.name + "\" has no centre of projection: its entrance pupil lies at infinity" +
-            (camera.lens.is_rotational() ? "" : ", or no ray goes from its film through its stop's middle"));
+            (camera.lens.is_rotational() ? "" : ", or no ray passes from the film through the centre of the stop"));
     return *pinhole;
 }
 
@@ -170,33 +178,37 @@ void bind_projection(py::module_& m) {
     m.attr("ProjectionStatus") =
         py::module_::import("enum").attr("IntEnum")("ProjectionStatus", values, "module"_a = "realcam");
     py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
-        .def("project", &project, "points_m"_a, py::kw_only(), "through"_a = "light", "return_status"_a = false,
-             R"(Where points of the scene, (N, 3) in metres, are in the picture: (N, 2) float64, column and row in
-pixels, counted right and down from the picture's upper left corner, so that the middle of the first
-pixel is (0.5, 0.5). By real rays at the lens's design wavelength, through lens, focus and stop as they
-are, or by the camera's model. Whether something in the scene hides a point is not asked.
-through: "light": the middle of the light of a point, as pictures show it, by the mean ray of each
-film point; "chief": where the ray through the middle of the stop lands.
-NaN where the lens images no such point. return_status: return (pixels, status), with a
-ProjectionStatus for each point. Raises InputError.)")
-        .def("ray", &rays_through, "pixels"_a, py::kw_only(), "through"_a = "light", "return_light"_a = false,
-             R"(The lines along which points of the picture, (N, 2) column and row as from project, look into the
-scene: (origins_m, directions), (N, 3) float64, the first where the line leaves the lens, the second
-unit. project takes each of their points back to the pixel.
-through: "light": the mean of the rays that a film point gets; "chief": that through the middle of
-the stop, even where a rim blocks it. NaN for a pixel without light, and at the edge of the image where
-the lines turn back inwards. return_light: return (origins_m, directions, light), with the irradiance
-of each pixel in an even field, over that in the middle of the film. Raises InputError.)")
+        .def(
+            "project", &project, "points_m"_a, py::kw_only(), "through"_a = "light", "return_status"_a = false,
+            R"(Projects points of the scene to pixels, by real rays at the lens's design wavelength or by the camera
+model.
+points_m: (N, 3), in metres, scene. Occlusion by the scene is not considered.
+through: projection ray of a point. "light": the centroid of its light, as pictures show it, by the centroid ray of each
+  film point; "chief": the chief ray, through the centre of the stop.
+return_status: True: return (pixels, status), with a ProjectionStatus for each point.
+Returns (N, 2) float64: column and row in pixels, to the right and down from the picture's upper left corner; the centre
+of the first pixel is (0.5, 0.5). NaN if the lens does not image the point. Raises InputError.)")
+        .def(
+            "ray", &rays_through, "pixels"_a, py::kw_only(), "through"_a = "light", "return_light"_a = false,
+            R"(Returns the projection rays of pixels: (origins_m, directions), (N, 3) float64, scene. Origins lie on the
+front of the lens, directions are unit vectors into the scene. project() maps every point of a ray to its pixel.
+pixels: (N, 2), column and row, see Camera.project.
+through: "light": the centroid of the rays that reach the film point; "chief": the ray through the centre of the stop,
+  even if a rim blocks it.
+return_light: True: return (origins_m, directions, light), with the relative illumination (N,): irradiance of the pixel
+  in a uniform field over that at the film centre.
+NaN for a pixel without light, and at the edge of the image where the field angle no longer increases. Raises
+InputError.)")
         .def_property_readonly(
             "camera_matrix", &camera_matrix,
-            R"((3, 3): K of the pinhole that the lens is to first order, in pixels as project counts them. OpenCV, whose
-first pixel has its middle at (0, 0), wants 0.5 less in the last column. Raises InputError where the
-entrance pupil lies at infinity.)")
+            R"((3, 3): intrinsic matrix K of the pinhole camera that the lens is to first order, in the pixel
+coordinates of project(). For OpenCV, whose first pixel has its centre at (0, 0), subtract 0.5 from the principal point
+in the last column. Raises InputError if the entrance pupil lies at infinity.)")
         .def_property_readonly(
             "world_to_camera", &world_to_camera,
-            R"((R, t), (3, 3) and (3,) in metres: R @ point + t is the point from the middle of the entrance pupil, with
-x right, y down and z forward, as OpenCV and COLMAP have it. Of a camera that moves: in the middle of
-the exposure. Raises InputError where the entrance pupil lies at infinity.)");
+            R"((R, t), arrays (3, 3) and (3,), in metres: R @ point + t is a scene point relative to the centre of the
+entrance pupil, with x to the right, y down and z forward, as in OpenCV and COLMAP. For a moving camera, at the middle
+of the exposure. Raises InputError if the entrance pupil lies at infinity.)");
 }
 
 }  // namespace realcam::bindings

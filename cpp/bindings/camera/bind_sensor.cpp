@@ -1,3 +1,5 @@
+// The Python class Sensor, and the simulation of its noise.
+
 #include <pybind11/stl.h>
 
 #include <numbers>
@@ -16,8 +18,10 @@ using namespace py::literals;
 
 namespace {
 
+/// Table of numbers as passed from Python.
 using Rows = std::vector<std::vector<double>>;
 
+/// Converts a table of two columns. `key`: name of the argument, for the InputError.
 std::vector<SensorPoint> points_from(const char* key, const Rows& rows) {
     std::vector<SensorPoint> points;
     for (const std::vector<double>& row : rows) {
@@ -61,12 +65,16 @@ Illuminant illuminant_from(const std::string& text) {
     return text.empty() ? Illuminant::named("D65") : Illuminant::parse(text);
 }
 
+/// Returns the sensor's pixel pitch. Throws InputError if the sensor adopts that of the film.
 double own_pitch_um(const Sensor& sensor) {
     if (!(sensor.pixel_pitch_um > 0))
-        throw InputError("the sensor \"" + sensor.name + "\" has pixels of any size: its film's");
+        throw InputError("the sensor \"" + sensor.name +
+                         "\" has no pixel pitch of its own; it adopts that of the film");
     return sensor.pixel_pitch_um;
 }
 
+/// Returns the mean number of dark electrons of a pixel. `current_e_per_s`: at the reference temperature of the sensor;
+/// `temperature_c`: of the exposure; std::nullopt: the reference temperature. Throws InputError.
 double dark_electrons(const Sensor& sensor, double current_e_per_s, double exposure_time_s,
                       std::optional<double> temperature_c) {
     const SensorNoise& noise = sensor.noise;
@@ -76,7 +84,7 @@ double dark_electrons(const Sensor& sensor, double current_e_per_s, double expos
     if (temperature_c && *temperature_c != noise.dark_current_temperature_c) {
         if (current_e_per_s > 0 && noise.dark_current_doubling_k == 0)
             throw InputError("the sensor \"" + sensor.name +
-                             "\" does not tell how its dark current changes with temperature "
+                             "\" does not specify how its dark current depends on temperature "
                              "(dark_current_doubling_k)");
         if (current_e_per_s > 0)
             doublings = (*temperature_c - noise.dark_current_temperature_c) / noise.dark_current_doubling_k;
@@ -84,6 +92,8 @@ double dark_electrons(const Sensor& sensor, double current_e_per_s, double expos
     return current_e_per_s * exposure_time_s * std::exp2(std::min(doublings, 60.0));
 }
 
+/// Tabulates the angular response over the square of the distance from the picture's centre, see AngularResponse.
+/// `film_pitch_mm`: pixel pitch of the film; `height`: rows of pixels.
 void set_angular_response(SensorRequest& request, const Sensor& sensor, double film_pitch_mm,
                           double exit_pupil_distance_mm, int height) {
     AngularResponse& response = request.angular_response;
@@ -101,11 +111,13 @@ void set_angular_response(SensorRequest& request, const Sensor& sensor, double f
     response.steps_per_square = static_cast<float>(AngularResponse::kSteps * per_pixel * per_pixel);
 }
 
-/// Returns the colour filter, 0 to 2 for red, green and blue, at an index of the mosaic.
+/// Returns the colour filter, 0 to 2 for red, green and blue, at a position of the 2 x 2 mosaic, 0 to 3 row by row.
 std::size_t filter_at(const Sensor& sensor, std::size_t position) {
     return sensor.has_filters() ? std::string_view("RGB").find(sensor.color_filter_array[position]) : 0;
 }
 
+/// Returns the raw values (H, W) of an exposure (H, W, 3) in lux seconds. `pixel_pitch_um`: of the sensor;
+/// `film_pitch_um`: of the film, for the angles of incidence. Other arguments as for Sensor.expose.
 py::array_t<std::uint16_t> expose(const Sensor& sensor, const InputArray<float>& exposure, double pixel_pitch_um,
                                   double film_pitch_um, double exit_pupil_distance_mm, double exposure_time_s,
                                   double iso, const std::string& illuminant, std::optional<double> temperature_c,
@@ -165,13 +177,13 @@ Sensor with_changes(Sensor sensor, const std::optional<std::string>& name, std::
                     std::optional<double> dark_current_doubling_k, std::optional<double> dsnu_e,
                     std::optional<double> prnu_percent, std::optional<double> hot_pixel_share,
                     std::optional<double> hot_pixel_current_e_per_s) {
-    std::string changes;
-    const auto changes_if = [&](bool does, const char* what) {
-        if (does) changes += std::string(changes.empty() ? "" : ", ") + what;
+    std::string changed_names;
+    const auto list_if = [&](bool has_changed, const char* key) {
+        if (has_changed) changed_names += std::string(changed_names.empty() ? "" : ", ") + key;
     };
-    const auto set = [&](const char* what, auto& value, const auto& given) {
-        changes_if(given && !(value == *given), what);
-        if (given) value = *given;
+    const auto set = [&](const char* key, auto& value, const auto& new_value) {
+        list_if(new_value && !(value == *new_value), key);
+        if (new_value) value = *new_value;
     };
     const Sensor before = sensor;
     if (name) sensor.name = *name;
@@ -181,10 +193,10 @@ Sensor with_changes(Sensor sensor, const std::optional<std::string>& name, std::
     if (quantum_efficiency) sensor.quantum_efficiency = efficiency_from(*quantum_efficiency, sensor.has_filters());
     if (cover_glass) sensor.cover_glass = points_from("cover_glass", *cover_glass);
     if (angular_response) sensor.angular_response = points_from("angular_response", *angular_response);
-    changes_if(sensor.columns != before.columns || sensor.rows != before.rows, "resolution");
-    changes_if(sensor.quantum_efficiency != before.quantum_efficiency, "quantum_efficiency");
-    changes_if(sensor.cover_glass != before.cover_glass, "cover_glass");
-    changes_if(sensor.angular_response != before.angular_response, "angular_response");
+    list_if(sensor.columns != before.columns || sensor.rows != before.rows, "resolution");
+    list_if(sensor.quantum_efficiency != before.quantum_efficiency, "quantum_efficiency");
+    list_if(sensor.cover_glass != before.cover_glass, "cover_glass");
+    list_if(sensor.angular_response != before.angular_response, "angular_response");
     SensorConversion& conversion = sensor.conversion;
     set("gain_dn_per_e", conversion.gain_dn_per_e, gain_dn_per_e);
     set("largest_gain_db", conversion.largest_gain_db, largest_gain_db);
@@ -202,7 +214,7 @@ Sensor with_changes(Sensor sensor, const std::optional<std::string>& name, std::
     set("prnu_percent", noise.prnu_percent, prnu_percent);
     set("hot_pixel_share", noise.hot_pixel_share, hot_pixel_share);
     set("hot_pixel_current_e_per_s", noise.hot_pixel_current_e_per_s, hot_pixel_current_e_per_s);
-    if (!changes.empty()) sensor.assumptions.push_back("changed since its file: " + changes);
+    if (!changed_names.empty()) sensor.assumptions.push_back("changed since its file: " + changed_names);
     validate(sensor);
     return sensor;
 }
@@ -217,37 +229,41 @@ std::string text_of(const Sensor& sensor) {
 
 Film film_of(const Sensor& sensor) {
     const double pitch_mm = own_pitch_um(sensor) / 1000;
-    if (sensor.columns == 0) throw InputError("the sensor \"" + sensor.name + "\" does not say how many pixels it has");
+    if (sensor.columns == 0)
+        throw InputError("the sensor \"" + sensor.name + "\" does not specify its number of pixels");
     const Film film{pitch_mm * sensor.columns, pitch_mm * sensor.rows, sensor.columns, sensor.rows};
     validate(film);
     return film;
 }
 
 void bind_data(py::class_<Sensor>& type) {
-    type.def_readonly("name", &Sensor::name)
-        .def_readonly("title", &Sensor::title)
-        .def_readonly("source", &Sensor::source)
+    type.def_readonly("name", &Sensor::name, "Name, which identifies a bundled sensor.")
+        .def_readonly("title", &Sensor::title, "Description in one line.")
+        .def_readonly("source", &Sensor::source, "Origin of the data.")
         .def_property_readonly(
             "assumptions",
             [](const Sensor& s)->Typed<"tuple[str, ...]", py::tuple> { return py::tuple(py::cast(s.assumptions)); },
-            "What is not published, and what stands in its place: a text for each.")
+            "Texts: what data are not published, and what is assumed instead; and what replace() has changed.")
         .def_property_readonly(
             "pixel_pitch_um",
             [](const Sensor& s) { return s.pixel_pitch_um > 0 ? std::optional(s.pixel_pitch_um) : std::nullopt; },
-            "None: that of the film's pixels.")
+            "Pixel pitch; None: that of the film's pixels.")
         .def_property_readonly(
             "resolution",
             [](const Sensor& s) { return s.columns > 0 ? std::optional(std::pair(s.columns, s.rows)) : std::nullopt; },
-            "(columns, rows); None: any.")
-        .def_readonly("color_filter_array", &Sensor::color_filter_array,
-                      "\"RGGB\" and so on, two rows of two from the top left; \"\": no filters.")
+            "(columns, rows) of pixels; None: any number.")
+        .def_readonly(
+            "color_filter_array", &Sensor::color_filter_array,
+            "Mosaic of colour filters such as \"RGGB\", two rows of two from the upper left; \"\": no filters.")
         .def_property_readonly("quantum_efficiency", &efficiency_of,
-                               "(nm, red, green, blue) or (nm, value): electrons per photon on the pixel's area.")
+                               "Table of (wavelength_nm, red, green, blue), or without filters (wavelength_nm, value): "
+                               "electrons per photon on the pixel's area.")
         .def_property_readonly(
-            "cover_glass", [](const Sensor& s) { return pairs_of(s.cover_glass); }, "(nm, transmission); empty: 1.")
+            "cover_glass", [](const Sensor& s) { return pairs_of(s.cover_glass); },
+            "Table of (wavelength_nm, transmittance); empty: 1.")
         .def_property_readonly(
             "angular_response", [](const Sensor& s) { return pairs_of(s.angular_response); },
-            "(degrees from the axis, response relative to it); empty: 1.");
+            "Table of (angle of incidence in degrees, response relative to normal incidence); empty: 1.");
 }
 
 void bind_conversion(py::class_<Sensor>& type) {
@@ -255,41 +271,50 @@ void bind_conversion(py::class_<Sensor>& type) {
         type.def_property_readonly(name, [member](const Sensor& s) { return s.conversion.*member; }, doc);
     };
     def("gain_dn_per_e", &SensorConversion::gain_dn_per_e,
-        "Overall system gain K at the lowest ISO; 0: whatever the ISO asks for.");
-    def("largest_gain_db", &SensorConversion::largest_gain_db, "That can be added to it, 20 dB a factor of 10.");
+        "Overall system gain K at the lowest ISO, in digital numbers per electron; 0: the gain follows from the ISO.");
+    def("largest_gain_db", &SensorConversion::largest_gain_db,
+        "Largest additional gain in dB; 20 dB are a factor of 10.");
     def("saturation_capacity_e", &SensorConversion::saturation_capacity_e,
-        "As EMVA 1288 measures it: where the temporal variance is largest.");
-    def("adc_bits", &SensorConversion::adc_bits, "Of the converter.");
-    def("black_level_dn", &SensorConversion::black_level_dn, "Of no light.");
-    def("converter_noise_dn", &SensorConversion::converter_noise_dn, "After the gain, standard deviation.");
+        "Saturation capacity in electrons as measured by EMVA 1288: at the maximum of the temporal variance.");
+    def("adc_bits", &SensorConversion::adc_bits, "Number of bits of the analogue-to-digital converter.");
+    def("black_level_dn", &SensorConversion::black_level_dn, "Raw value without light, in digital numbers.");
+    def("converter_noise_dn", &SensorConversion::converter_noise_dn,
+        "Standard deviation of the noise after the gain, in digital numbers.");
     type.def_property_readonly(
         "full_well_e", [](const Sensor& s) { return full_well_e(s); },
-        "Electrons that a pixel holds. EMVA 1288's saturation capacity lies some three deviations below.");
+        "Full-well capacity in electrons. EMVA 1288's saturation capacity is about three standard deviations lower.");
 }
 
 void bind_noise(py::class_<Sensor>& type) {
     const auto def = [&](const char* name, double SensorNoise::* member, const char* doc) {
         type.def_property_readonly(name, [member](const Sensor& s) { return s.noise.*member; }, doc);
     };
-    def("read_noise_e", &SensorNoise::read_noise_e, "Temporal dark noise without exposure time, before the gain.");
-    def("row_noise_e", &SensorNoise::row_noise_e, "What the pixels of a row have together, new in each exposure.");
-    def("dark_current_e_per_s", &SensorNoise::dark_current_e_per_s, "Mean of a pixel at dark_current_temperature_c.");
-    def("dark_current_temperature_c", &SensorNoise::dark_current_temperature_c, "Degrees Celsius.");
+    def("read_noise_e", &SensorNoise::read_noise_e,
+        "Read noise: temporal dark noise for zero exposure time, before the gain, in electrons (standard deviation).");
+    def("row_noise_e", &SensorNoise::row_noise_e,
+        "Standard deviation, in electrons, of the noise that is common to the pixels of a row in an exposure.");
+    def("dark_current_e_per_s", &SensorNoise::dark_current_e_per_s,
+        "Mean dark current of a pixel at dark_current_temperature_c, in electrons per second.");
+    def("dark_current_temperature_c", &SensorNoise::dark_current_temperature_c,
+        "Temperature of the dark currents, in degrees Celsius.");
     def("dark_current_doubling_k", &SensorNoise::dark_current_doubling_k,
-        "Kelvin in which the dark current doubles; 0: not known.");
-    def("dsnu_e", &SensorNoise::dsnu_e, "Dark signal non-uniformity: deviation of the pixels' offsets.");
-    def("prnu_percent", &SensorNoise::prnu_percent, "Photo-response non-uniformity.");
-    def("hot_pixel_share", &SensorNoise::hot_pixel_share, "Of all pixels, 0 to 1.");
+        "Temperature increase in kelvin that doubles the dark current; 0: unknown.");
+    def("dsnu_e", &SensorNoise::dsnu_e,
+        "Dark signal non-uniformity: standard deviation of the pixels' offsets, in electrons.");
+    def("prnu_percent", &SensorNoise::prnu_percent,
+        "Photo-response non-uniformity: standard deviation of the pixels' responses, in percent.");
+    def("hot_pixel_share", &SensorNoise::hot_pixel_share, "Fraction of the pixels that are hot, 0 to 1.");
     def("hot_pixel_current_e_per_s", &SensorNoise::hot_pixel_current_e_per_s,
-        "Mean of the hot pixels' current above the dark current; it is distributed exponentially.");
+        "Mean of the hot pixels' additional dark current, which is exponentially distributed, in electrons per "
+        "second.");
 }
 
 }  // namespace
 
 void bind_sensor(py::module_& m) {
-    m.def("sensor_names", &io::sensor_names, "Names of the bundled sensors.");
+    m.def("sensor_names", &io::sensor_names, "Returns the names of the bundled sensors.");
     py::class_<Sensor> type(m, "Sensor",
-                            "An image sensor, by the linear model of EMVA standard 1288 (docs/sensor.md). A value.");
+                            "Image sensor by the linear model of the EMVA standard 1288 (docs/sensor.md). Immutable.");
     def_hashable_value(type);
     type.def_static(
             "load",
@@ -299,7 +324,9 @@ void bind_sensor(py::module_& m) {
                 return io::read_sensor(path, heed_signals);
             },
             "name_or_path"_a = "ideal",
-            "A bundled sensor by name, or a sensor file (.toml) by path. Raises InputError with file and line.")
+            "Reads a sensor: name of a bundled sensor, or path of a sensor file (.toml). Raises InputError with file "
+            "and "
+            "line.")
         .def("replace", &with_changes, py::kw_only(), "name"_a = py::none(), "pixel_pitch_um"_a = py::none(),
              "resolution"_a = py::none(), "color_filter_array"_a = py::none(), "quantum_efficiency"_a = py::none(),
              "cover_glass"_a = py::none(), "angular_response"_a = py::none(), "gain_dn_per_e"_a = py::none(),
@@ -309,18 +336,20 @@ void bind_sensor(py::module_& m) {
              "dark_current_temperature_c"_a = py::none(), "dark_current_doubling_k"_a = py::none(),
              "dsnu_e"_a = py::none(), "prnu_percent"_a = py::none(), "hot_pixel_share"_a = py::none(),
              "hot_pixel_current_e_per_s"_a = py::none(),
-             R"(The sensor with some of its values changed, as sensors/README.md describes them. None stays. Raises
-InputError.)")
+             R"(Returns the sensor with some properties changed. Arguments as the properties, which sensors/README.md
+describes; None: unchanged. Raises InputError.)")
         .def("film", &film_of,
-             "A Film of the sensor's size with its pixels. Raises InputError where the sensor has none of its own.")
+             "Returns a Film with the sensor's size and pixels. Raises InputError if the sensor has no pixel pitch or "
+             "resolution of its own.")
         .def(
             "electrons_per_um2",
             [](const Sensor& sensor, const std::string& illuminant) {
                 return matrix_array(electrons_per_um2(sensor, illuminant_from(illuminant)));
             },
             "illuminant"_a = "D65",
-            R"((3, 3): electrons in a square micrometre under each filter (rows: red, green, blue) for one lux second of
-each channel of the film (columns), cover glass included. Raises InputError.)")
+            R"(Returns an array (3, 3): electrons per square micrometre under each filter (rows: red, green, blue) for
+an exposure of one lux second in each channel of the film (columns), including the cover glass.
+illuminant: spectrum of the light, as for RenderSettings. Raises InputError.)")
         .def(
             "iso_range",
             [](const Sensor& sensor, std::optional<double> pitch_um) {
@@ -330,8 +359,9 @@ each channel of the film (columns), cover glass included. Raises InputError.)")
                 return std::pair(speed.lowest_iso(), speed.highest_iso());
             },
             "pixel_pitch_um"_a = py::none(),
-            R"((lowest, highest) ISO number by saturation (ISO 12232: 78 over the lux seconds of D65 that saturate);
-(0, inf) where the gain is whatever the ISO asks for. The highest is the lowest with the largest gain.)")
+            R"(Returns the (lowest, highest) ISO number by saturation (ISO 12232: 78 over the exposure by D65, in lux
+seconds, that saturates). The highest is that with the largest gain. (0, inf) if the gain follows from the ISO.
+pixel_pitch_um: None: the sensor's own.)")
         .def(
             "expose",
             [](const Typed<"Sensor">& self, const Typed<"Image">& image, std::optional<double> iso, std::int64_t seed,
@@ -342,24 +372,27 @@ each channel of the film (columns), cover glass included. Raises InputError.)")
                 },
             "image"_a, py::kw_only(), "iso"_a = py::none(), "seed"_a = 0, "serial"_a = 0,
             "temperature_c"_a = py::none(), "threads"_a = 0,
-            R"(The RawImage that the sensor makes of an Image, on whose film it lies; the image stays as it is.
-iso: None is the camera's. seed: of the noise of this exposure; serial: of what a sensor has for ever
-(PRNU, DSNU, hot pixels). temperature_c: None is dark_current_temperature_c. threads: 0 is all.
-The noise is the same for any number of threads. Each pixel of the picture is one of the sensor's;
-a warning tells where the film's pixels have another size. Raises InputError.)")
+            R"(Returns the RawImage of an exposure of the sensor, which lies in the place of the film of an Image.
+iso: sensitivity; None: that of the camera. seed: of the noise of this exposure. serial: seed of the sensor's fixed
+  pattern (PRNU, DSNU, hot pixels). temperature_c: None: dark_current_temperature_c. threads: number of threads; 0: all.
+Each pixel of the image is one pixel of the sensor; a UserWarning is issued if the film's pixels have another size. The
+noise does not depend on the number of threads. Raises InputError.)")
         .def("__repr__", [](const Sensor& s) { return text_of(s); });
     bind_data(type);
     bind_conversion(type);
     bind_noise(type);
     m.def("_expose", &expose, "sensor"_a, "exposure"_a, "pixel_pitch_um"_a, "film_pitch_um"_a,
           "exit_pupil_distance_mm"_a, "exposure_time_s"_a, "iso"_a, "illuminant"_a, "temperature_c"_a, "seed"_a,
-          "serial"_a, "threads"_a);
+          "serial"_a, "threads"_a,
+          R"(Internal: use Sensor.expose. Returns raw values (H, W) uint16 of an exposure (H, W, 3) in lux seconds.
+film_pitch_um, exit_pupil_distance_mm: determine the angles of incidence for the angular response.)");
     m.def(
         "_sensor_gain",
         [](const Sensor& sensor, double pixel_pitch_um, double iso) {
             return SensorSpeed(sensor, pixel_pitch_um).gain_dn_per_e(iso);
         },
-        "sensor"_a, "pixel_pitch_um"_a, "iso"_a);
+        "sensor"_a, "pixel_pitch_um"_a, "iso"_a,
+        "Internal. Returns the gain at an ISO, in digital numbers per electron.");
     m.def(
         "_sensor_color",
         [](const Sensor& sensor, const std::string& illuminant) {
@@ -368,7 +401,9 @@ a warning tells where the film's pixels have another size. Raises InputError.)")
                                   matrix_array(color.camera_from_xyz), matrix_array(color.film_from_balanced),
                                   matrix_array(color.d50_from_balanced));
         },
-        "sensor"_a, "illuminant"_a);
+        "sensor"_a, "illuminant"_a,
+        R"(Internal. Returns the raw colour of white (3,), and the matrices (3, 3) camera_from_xyz, film_from_balanced
+and d50_from_balanced, for colours of the camera that are balanced by that white.)");
 }
 
 }  // namespace realcam::bindings

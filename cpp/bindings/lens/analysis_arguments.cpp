@@ -18,7 +18,8 @@ std::vector<PupilPoint> pattern_from(const std::string& pattern, int samples,
         RayLoop{heed_signals}.in_order(count, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {
                 const double x = pupil->data()[2 * i], y = pupil->data()[2 * i + 1];
-                if (!(hypotenuse(x, y) < 10)) throw InputError("points in the pupil are in units of the stop's radius");
+                if (!(hypotenuse(x, y) < 10))
+                    throw InputError("points of pupil must be in units of the stop's radius, below 10");
                 points.push_back({x, y, 1});
             }
         });

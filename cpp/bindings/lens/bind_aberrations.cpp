@@ -1,8 +1,9 @@
-#include "../../optics/analysis/seidel.hpp"
-#include "../../optics/lens/parabasal.hpp"
+// Third-order aberrations (the class Seidel, Lens.seidel) and the classes of first-order data, FirstOrder and Meridian.
 
 #include <pybind11/stl.h>
 
+#include "../../optics/analysis/seidel.hpp"
+#include "../../optics/lens/parabasal.hpp"
 #include "../bindings.hpp"
 #include "../values/arrays.hpp"
 #include "../values/short_text.hpp"
@@ -12,6 +13,7 @@ namespace realcam::bindings {
 
 using namespace py::literals;
 
+// Unpickled tables need no check beyond that of their members.
 template <>
 struct RestoredCheck<ParaxialRay> : AnyMembers {};
 template <>
@@ -21,11 +23,13 @@ struct RestoredCheck<SeidelTable> : AnyMembers {};
 
 namespace {
 
+/// Returns a function of a table that returns the array (S,) of f(surface).
 template <class F>
-auto of_rows(F&& f) {
+auto by_surface(F&& f) {
     return [f](const SeidelTable& t) { return array_of(t.surfaces.size(), [&](auto i) { return f(t.surfaces[i]); }); };
 }
 
+/// Returns an array (S,) of one transverse aberration, mm.
 template <double TransverseAberrations::* member>
 py::array_t<double> transverse(const SeidelTable& t) {
     return array_of(t.surfaces.size(), [&](auto i) { return t.transverse(t.surfaces[i]).*member; });
@@ -37,48 +41,56 @@ void bind_seidel_table(py::module_& m) {
     using Table = const SeidelTable&;
     py::class_<SeidelTable> table(
         m, "Seidel",
-        R"(Third-order aberrations surface by surface: arrays of shape (S,), one entry for each of the lens's surfaces.
-The sum over the surfaces is the lens's. Transverse aberrations are those of a ray at the edge of the stop and of
-the field, along y; names and signs as CODE V's.)");
+        R"(Third-order aberrations surface by surface: arrays of shape (S,), one entry for each of the lens's surfaces;
+their sums are the aberrations of the lens. Transverse aberrations (mm) are those of a ray at the edge of the stop and
+of the field, along y, with names and signs as in CODE V. See Lens.seidel.)");
     def_value(table);
-    table.def_readonly("wavelength_nm", &SeidelTable::wavelength_nm)
-        .def_readonly("lagrange_invariant_mm", &SeidelTable::lagrange_invariant)
-        .def_property_readonly("marginal_height_mm", of_rows([](Row r) { return r.marginal.height; }),
-                               "(S,): paraxial ray to the edge of the stop.")
-        .def_property_readonly("marginal_slope", of_rows([](Row r) { return r.marginal.slope; }),
-                               "(S,): behind the surface.")
-        .def_property_readonly("marginal_invariant", of_rows([](Row r) { return r.marginal_invariant; }),
-                               "(S,): index times angle of incidence.")
-        .def_property_readonly("chief_height_mm", of_rows([](Row r) { return r.chief.height; }),
-                               "(S,): paraxial ray from the edge of the field through the middle of the stop.")
-        .def_property_readonly("chief_slope", of_rows([](Row r) { return r.chief.slope; }), "(S,): behind the surface.")
-        .def_property_readonly("chief_invariant", of_rows([](Row r) { return r.chief_invariant; }),
-                               "(S,): index times angle of incidence.")
-        .def_property_readonly("spherical_mm", &transverse<&T::spherical>, "(S,): SA.")
-        .def_property_readonly("tangential_coma_mm", &transverse<&T::tangential_coma>, "(S,): TCO.")
+    table.def_readonly("wavelength_nm", &SeidelTable::wavelength_nm, "Wavelength of the monochromatic aberrations.")
+        .def_readonly("lagrange_invariant_mm", &SeidelTable::lagrange_invariant,
+                      "Lagrange invariant of the marginal and the chief ray.")
+        .def_property_readonly("marginal_height_mm", by_surface([](Row r) { return r.marginal.height; }),
+                               "(S,): height of the paraxial ray through the edge of the stop.")
+        .def_property_readonly("marginal_slope", by_surface([](Row r) { return r.marginal.slope; }),
+                               "(S,): slope of the marginal ray behind each surface.")
+        .def_property_readonly("marginal_invariant", by_surface([](Row r) { return r.marginal_invariant; }),
+                               "(S,): refractive index times paraxial angle of incidence of the marginal ray.")
+        .def_property_readonly("chief_height_mm", by_surface([](Row r) { return r.chief.height; }),
+                               "(S,): height of the paraxial ray from the edge of the field through the centre of the "
+                               "stop.")
+        .def_property_readonly("chief_slope", by_surface([](Row r) { return r.chief.slope; }),
+                               "(S,): slope of the chief ray behind each surface.")
+        .def_property_readonly("chief_invariant", by_surface([](Row r) { return r.chief_invariant; }),
+                               "(S,): refractive index times paraxial angle of incidence of the chief ray.")
+        .def_property_readonly("spherical_mm", &transverse<&T::spherical>,
+                               "(S,): transverse spherical aberration (CODE V: SA).")
+        .def_property_readonly("tangential_coma_mm", &transverse<&T::tangential_coma>,
+                               "(S,): transverse tangential coma (CODE V: TCO).")
         .def_property_readonly("tangential_astigmatism_mm", &transverse<&T::tangential_astigmatism>,
-                               "(S,): TAS, the blur of the tangential image surface.")
+                               "(S,): transverse blur due to the tangential image surface (CODE V: TAS).")
         .def_property_readonly("sagittal_astigmatism_mm", &transverse<&T::sagittal_astigmatism>,
-                               "(S,): SAS, the blur of the sagittal image surface.")
-        .def_property_readonly("petzval_mm", &transverse<&T::petzval>, "(S,): PTB, the blur of the Petzval surface.")
-        .def_property_readonly("distortion_mm", &transverse<&T::distortion>, "(S,): DST.")
+                               "(S,): transverse blur due to the sagittal image surface (CODE V: SAS).")
+        .def_property_readonly("petzval_mm", &transverse<&T::petzval>,
+                               "(S,): transverse blur due to the Petzval surface (CODE V: PTB).")
+        .def_property_readonly("distortion_mm", &transverse<&T::distortion>,
+                               "(S,): transverse distortion (CODE V: DST).")
         .def_property_readonly("axial_colour_mm", &transverse<&T::axial_colour>,
-                               "(S,): AX, between the two colours, of the marginal ray.")
-        .def_property_readonly("lateral_colour_mm", &transverse<&T::lateral_colour>, "(S,): LAT, of the chief ray.")
-        .def_property_readonly("petzval_curvature_per_mm", of_rows([](Row r) { return r.petzval_curvature; }),
-                               "(S,): PTZ; their sum is the curvature of the Petzval surface.")
+                               "(S,): transverse aberration of the marginal ray between the two colours (CODE V: AX).")
+        .def_property_readonly("lateral_colour_mm", &transverse<&T::lateral_colour>,
+                               "(S,): transverse aberration of the chief ray between the two colours (CODE V: LAT).")
+        .def_property_readonly("petzval_curvature_per_mm", by_surface([](Row r) { return r.petzval_curvature; }),
+                               "(S,): contributions to the curvature of the Petzval surface (CODE V: PTZ).")
         .def_property_readonly(
             "seidel_mm",
             [](Table t) {
                 return table_of(t.surfaces.size(), 5, [&](auto i, auto k) { return t.surfaces[i].sums[k]; });
             },
-            "(S, 5): the Seidel sums S_I to S_V; a positive S_I is an undercorrected surface's.")
+            "(S, 5): Seidel sums S_I to S_V; S_I is positive for undercorrected spherical aberration.")
         .def_property_readonly(
             "colour_mm",
             [](Table t) {
                 return table_of(t.surfaces.size(), 2, [&](auto i, auto k) { return t.surfaces[i].colour[k]; });
             },
-            "(S, 2): C_I and C_II, axial and lateral colour, short less long wavelength.")
+            "(S, 2): chromatic sums C_I (axial colour) and C_II (lateral colour), short minus long wavelength.")
         .def_property_readonly(
             "coefficients_waves",
             [](Table t) {
@@ -87,9 +99,9 @@ the field, along y; names and signs as CODE V's.)");
                     return std::array{w.w040, w.w131, w.w222, w.w220, w.w311, w.w020_colour, w.w111_colour}[k];
                 });
             },
-            R"((S, 7): W040, W131, W222, W220, W311, and of colour W020, W111, in
-W = W040 r^4 + W131 h r^3 cos + W222 h^2 r^2 cos^2 + W220 h^2 r^2 + W311 h^3 r cos, with r and h as shares of the
-pupil's radius and of the field.)")
+            R"((S, 7): wavefront coefficients W040, W131, W222, W220, W311, and the chromatic ones W020 and W111, in
+waves: W = W040 r^4 + W131 h r^3 cos(phi) + W222 h^2 r^2 cos^2(phi) + W220 h^2 r^2 + W311 h^3 r cos(phi), with r the
+pupil radius and h the field, both relative to their maximum, and phi the azimuth in the pupil from the y axis.)")
         .def("__repr__", [](Table t) {
             return "<realcam.Seidel " + counted(t.surfaces.size(), "surface") + " at " + digits(t.wavelength_nm) +
                    " nm>";
@@ -108,51 +120,58 @@ SeidelTable make_seidel(const LensSystem& lens, double field_deg, std::optional<
 void bind_seidel(py::module_& m) {
     bind_seidel_table(m);
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
-        .def("seidel", &make_seidel, "field_deg"_a, py::kw_only(), "object_distance_m"_a = py::none(),
-             "wavelength_nm"_a = py::none(), "colours_nm"_a = std::pair(kLineF_nm, kLineC_nm),
-             R"(Third-order and primary chromatic aberrations, surface by surface, with conics, aspheres and mirrors
-(W. T. Welford, Aberrations of Optical Systems, chapters 8 and 10).
-field_deg: angle of the paraxial chief ray to the axis; positive: it rises towards +y and the film.
-object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
-colours_nm: the short and the long wavelength.
-Returns a Seidel. Raises InputError for angles of 90 deg and more, and for an afocal lens.)");
+        .def(
+            "seidel", &make_seidel, "field_deg"_a, py::kw_only(), "object_distance_m"_a = py::none(),
+            "wavelength_nm"_a = py::none(), "colours_nm"_a = std::pair(kLineF_nm, kLineC_nm),
+            R"(Computes third-order and primary chromatic aberrations surface by surface, including conics, aspheres and
+mirrors (W. T. Welford, Aberrations of Optical Systems, chapters 8 and 10).
+field_deg: angle of the paraxial chief ray to the axis; positive: the light travels towards +y on its way to the film.
+object_distance_m: distance from the object plane to the front vertex, inf allowed; None: the plane in focus.
+wavelength_nm: wavelength of the monochromatic aberrations; None: the design wavelength.
+colours_nm: the short and the long wavelength of the chromatic aberrations.
+Returns a Seidel. Raises InputError for an angle of 90 degrees or more, and for an afocal lens.)");
 }
-
-using namespace py::literals;
 
 void bind_first_order(py::module_& m) {
     py::class_<FirstOrder> data(
         m, "FirstOrder",
-        R"(First-order data at one wavelength. mm; positions from the front vertex. The effective focal length is 1 / power;
-in an image space of another index than air the rear one is image_index times that. Of an afocal lens the focal length,
-the focal distances and the f-number are infinite.)");
+        R"(First-order (paraxial) data at one wavelength. For an afocal lens the focal length, the focal distances and
+the f-number are infinite.)");
     def_hashable_value(data);
-    data.def_readonly("effective_focal_length_mm", &FirstOrder::effective_focal_length)
-        .def_readonly("back_focal_distance_mm", &FirstOrder::back_focal_distance)
-        .def_readonly("front_focal_distance_mm", &FirstOrder::front_focal_distance)
-        .def_readonly("f_number", &FirstOrder::f_number)
-        .def_readonly("entrance_pupil_position_mm", &FirstOrder::entrance_pupil_position)
-        .def_readonly("entrance_pupil_diameter_mm", &FirstOrder::entrance_pupil_diameter)
-        .def_readonly("exit_pupil_position_mm", &FirstOrder::exit_pupil_position)
-        .def_readonly("exit_pupil_diameter_mm", &FirstOrder::exit_pupil_diameter)
-        .def_readonly("image_index", &FirstOrder::image_index, "Refractive index of the medium before the film.")
+    data.def_readonly("effective_focal_length_mm", &FirstOrder::effective_focal_length,
+                      "1 / power. In an image space other than air the rear focal length is image_index times that.")
+        .def_readonly("back_focal_distance_mm", &FirstOrder::back_focal_distance,
+                      "Distance from the last vertex to the rear focal point.")
+        .def_readonly("front_focal_distance_mm", &FirstOrder::front_focal_distance,
+                      "Position of the front focal point, from the front vertex.")
+        .def_readonly("f_number", &FirstOrder::f_number, "Focal length / diameter of the entrance pupil.")
+        .def_readonly("entrance_pupil_position_mm", &FirstOrder::entrance_pupil_position,
+                      "z of the entrance pupil, from the front vertex.")
+        .def_readonly("entrance_pupil_diameter_mm", &FirstOrder::entrance_pupil_diameter,
+                      "Diameter of the entrance pupil.")
+        .def_readonly("exit_pupil_position_mm", &FirstOrder::exit_pupil_position,
+                      "z of the exit pupil, from the front vertex.")
+        .def_readonly("exit_pupil_diameter_mm", &FirstOrder::exit_pupil_diameter, "Diameter of the exit pupil.")
+        .def_readonly("image_index", &FirstOrder::image_index, "Refractive index of the medium in front of the film.")
         .def("__repr__", [](const FirstOrder& d) {
             return "<realcam.FirstOrder focal length " + digits(d.effective_focal_length) + " mm, f/" +
                    digits(d.f_number) + ", back focal distance " + digits(d.back_focal_distance) + " mm>";
         });
     py::class_<Meridian> meridian(
         m, "Meridian",
-        R"(A lens in one of its two principal meridians: planes through the chief ray of the film's middle in which
-light stays. mm; without power the focal length and the f-number are infinite.)");
+        R"(First-order data of a lens in one of its two principal meridians: planes containing the chief ray of the film
+centre; a ray launched in one of them stays in it. Without power, the focal length and the f-number are infinite. See
+Lens.meridians.)");
     def_hashable_value(meridian);
     meridian
         .def_readonly("azimuth_deg", &Meridian::azimuth_deg,
-                      "Of the plane in front of the lens, from the x axis towards y; -90 to 90.")
-        .def_readonly("focal_length_mm", &Meridian::focal_length)
+                      "Azimuth of the plane in front of the lens, from the x axis towards y; -90 to 90.")
+        .def_readonly("focal_length_mm", &Meridian::focal_length, "Focal length.")
         .def_readonly("back_focal_distance_mm", &Meridian::back_focal_distance,
-                      "Last vertex to the focus of distant light.")
-        .def_readonly("f_number", &Meridian::f_number)
-        .def_readonly("entrance_pupil_diameter_mm", &Meridian::entrance_pupil_diameter)
+                      "Distance from the last vertex to the focus of light from infinity.")
+        .def_readonly("f_number", &Meridian::f_number, "Focal length / width of the entrance pupil.")
+        .def_readonly("entrance_pupil_diameter_mm", &Meridian::entrance_pupil_diameter,
+                      "Width of the entrance pupil in this plane.")
         .def("__repr__", [](const Meridian& d) {
             return "<realcam.Meridian at " + digits(d.azimuth_deg) + " deg, focal length " + digits(d.focal_length) +
                    " mm, f/" + digits(d.f_number) + '>';

@@ -1,10 +1,11 @@
-#include "../../optics/analysis/ray_aiming.hpp"
-#include "../../optics/analysis/wavefront.hpp"
+// Analyses of one object point by rays aimed at the stop: Lens.aim, Lens.wavefront and Lens.spot.
 
 #include <pybind11/stl.h>
 
 #include "../../embree/lens_rays.hpp"
+#include "../../optics/analysis/ray_aiming.hpp"
 #include "../../optics/analysis/spot.hpp"
+#include "../../optics/analysis/wavefront.hpp"
 #include "../bindings.hpp"
 #include "../values/arrays.hpp"
 #include "../values/restored.hpp"
@@ -21,6 +22,8 @@ namespace {
 using Array = py::array_t<double>;
 using Points = InputArray<double>;
 
+/// Returns the distance from the last vertex to the image plane, mm: that of the lens's film for std::nullopt. Throws
+/// InputError.
 double film_distance_from(const LensSystem& lens, std::optional<double> mm) {
     if (mm && !std::isfinite(*mm)) throw InputError("film_distance_mm must be a finite length, or None for the film");
     return mm.value_or(lens.film_distance);
@@ -42,13 +45,13 @@ py::array_t<int> status_of(const FieldRays& rays) {
 }
 
 constexpr const char* kPupilText =
-    "(N, 2): x and y on the aperture stop, as shares of the radius of the circle that holds its opening.";
-constexpr const char* kWeightsText = "(N,): shares of the circle's area for which the rays stand; their sum is 1.";
+    "(N, 2): points (x, y) on the aperture stop, in units of the radius of the stop's bounding circle.";
+constexpr const char* kWeightsText =
+    "(N,): fraction of the area of the stop's bounding circle that each ray represents; the sum is 1.";
 constexpr const char* kStatusText =
-    "(N,): RayStatus values; NO_CONVERGENCE where no ray was found that hits the point.";
+    "(N,): RayStatus values; NO_CONVERGENCE if no ray was found that hits the point of the stop.";
 
-// Wavefront, spot, aimed rays.
-
+/// Rays in front of the lens, see the docstrings of the Python class.
 struct AimedRays {
     Array origins_mm, directions;
     py::array_t<int> status;
@@ -83,6 +86,7 @@ AimedRays aim(const LensSystem& lens, const Points& pupil, double field_deg, std
     return aimed;
 }
 
+/// Wavefront with the data that its Python class shows. `last_vertex_mm`: z of the last vertex from the front vertex.
 struct PythonWavefront {
     Wavefront wavefront;
     double wavelength_nm, stop_radius_mm, last_vertex_mm;
@@ -115,8 +119,9 @@ PythonWavefront make_wavefront(const LensSystem& lens, double field_deg, std::op
             wavelength, stop_reach(lens), lens.last_vertex(), pattern == "grid" && !pupil ? samples : 0};
 }
 
-Array map_of(const PythonWavefront& w) {
-    if (w.columns == 0) throw InputError("a map is made of the pattern \"grid\" only");
+/// Returns the OPD in waves as an array of shape (columns, columns).
+Array opd_map(const PythonWavefront& w) {
+    if (w.columns == 0) throw InputError("a map requires the pattern \"grid\"");
     const auto n = static_cast<std::size_t>(w.columns);
     Array map = table_of(n, n, [](auto, auto) { return std::numeric_limits<double>::quiet_NaN(); });
     for (std::size_t i = 0; i < w.wavefront.opd.size(); ++i)
@@ -192,26 +197,32 @@ void def_rays(py::class_<T>& type, const RaysOf& rays_of) {
 }
 
 void bind_aim(py::module_& m, PythonLens& lens) {
-    py::class_<AimedRays> aimed_rays(m, "AimedRays", "Rays of one object point, in front of the lens. Lens frame.");
+    py::class_<AimedRays> aimed_rays(m, "AimedRays",
+                                     "Rays of one object point in front of the lens, in the lens frame. See Lens.aim.");
     def_result(aimed_rays);
     aimed_rays
         .def_readonly(
             "origins_mm", &AimedRays::origins_mm,
-            R"((N, 3): in the plane through the middle of the paraxial entrance pupil across the light, which may lie
-behind the front surface: the ray is that straight line, also in front of it. Where film_mm names the field,
-or the lens is not of revolution: through where the chief ray meets the front surface. nan where status is not OK.)")
-        .def_readonly("directions", &AimedRays::directions, "(N, 3), unit; nan where status is not OK.")
+            R"((N, 3): intersections of the rays with the plane through the centre of the paraxial entrance pupil,
+perpendicular to the light. It may lie behind the front surface; the ray is the whole straight line. If film_mm
+specifies the field, or the lens is not rotationally symmetric, the plane goes through the chief ray's
+intersection with the front surface. nan if status is not OK.)")
+        .def_readonly("directions", &AimedRays::directions,
+                      "(N, 3): unit vectors in the direction of the light; nan if status is not OK.")
         .def_readonly("status", &AimedRays::status, kStatusText)
         .def("__repr__",
              [](const AimedRays& rays) { return "<realcam.AimedRays " + counted(py::len(rays.status), "ray") + '>'; });
     static const std::string aim_text =
-        std::string(R"(Rays of one object point that hit given points of the real stop, for Lens.trace(start="scene").
+        std::string(
+            R"(Finds the rays of one object point that hit specified points of the real stop, for
+Lens.trace(start="scene").
 pupil: (N, 2), points of the stop in units of its radius.
 )") + kFieldText +
-        R"(Returns AimedRays; the status is that of the ray behind the lens, and a ray that is not OK is nan. Origins may
-lie behind the front surface: Lens.trace takes a ray for the whole straight line. Points on the very edge of the stop
-are aimed at 5e-11 of its radius further in, so that rounding does not block the ray when it is traced.
-Raises InputError where no ray of the object point reaches the middle of the stop.)";
+        R"(Returns AimedRays. The status is that of the ray behind the lens; a ray whose status is not OK is nan.
+Origins may lie behind the front surface, because Lens.trace uses the whole straight line of a ray. For points on the
+edge of the stop the aim is 5e-11 of its radius further inside, so that rounding does not block the ray when it is
+traced.
+Raises InputError if no ray of the object point reaches the centre of the stop.)";
     lens.def("aim", &aim, "pupil"_a, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
              "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), aim_text.c_str());
 }
@@ -220,54 +231,62 @@ void bind_wavefront(py::module_& m, PythonLens& lens) {
     using W = const PythonWavefront&;
     py::class_<PythonWavefront> wavefront(
         m, "Wavefront",
-        R"(Optical path differences of one object point over the stop, in waves: positive where the wavefront is ahead
-of the reference sphere. Means are over the area of the open stop.)");
+        R"(Optical path differences (OPD) of one object point over the stop, in waves; positive where the wavefront is
+ahead of the reference sphere. Means are over the area of the open stop. See Lens.wavefront.)");
     def_value(wavefront);
     def_rays(wavefront, [](W w) -> const FieldRays& { return w.wavefront.rays; });
     wavefront
         .def_property_readonly(
             "opd_waves",
             [](W w) { return array_of(w.wavefront.opd.size(), [&](auto i) { return w.wavefront.opd[i]; }); },
-            "(N,): less that of the chief ray, if nothing is removed; nan where no ray passes.")
-        .def("map_waves", &map_of,
-             R"((samples, samples): opd_waves of the pattern "grid" as a picture, rows from the lowest y, columns from
-the lowest x; nan outside. Raises InputError for other patterns.)")
+            "(N,): OPD of each ray, relative to the chief ray if remove is None; nan if the ray does not pass.")
+        .def("map_waves", &opd_map,
+             R"(Returns opd_waves of the pattern "grid" as an array of shape (samples, samples), rows from the lowest y,
+columns from the lowest x; nan where no ray passes. Raises InputError for other patterns.)")
         .def_property_readonly(
-            "rms_waves", [](W w) { return w.wavefront.rms; }, "About the mean.")
-        .def_property_readonly("peak_to_valley_waves", [](W w) { return w.wavefront.peak_to_valley; })
+            "rms_waves", [](W w) { return w.wavefront.rms; }, "RMS of the OPD about its mean, in waves.")
         .def_property_readonly(
-            "strehl", [](W w) { return w.wavefront.strehl; }, "|mean of exp(2 pi i W)|^2.")
+            "peak_to_valley_waves", [](W w) { return w.wavefront.peak_to_valley; },
+            "Largest minus smallest OPD, in waves.")
+        .def_property_readonly(
+            "strehl", [](W w) { return w.wavefront.strehl; }, "Strehl ratio |mean of exp(2 pi i OPD)|^2.")
         .def_property_readonly(
             "strehl_marechal", [](W w) { return w.wavefront.strehl_marechal; },
-            "Marechal's approximation in Mahajan's form, exp(-(2 pi rms)^2).")
+            "Strehl ratio by Marechal's approximation in Mahajan's form, exp(-(2 pi rms_waves)^2).")
         .def_property_readonly(
             "centre_mm",
             [](W w) {
                 const Vec3d c = w.wavefront.centre;
                 return std::array{c.x, c.y, c.z + w.last_vertex_mm};
             },
-            "(x, y, z) of the reference sphere's centre, lens frame.")
+            "(x, y, z) of the reference sphere's centre in mm, lens frame.")
         .def_property_readonly(
             "reference_radius_mm", [](W w) { return 1 / w.wavefront.reference_curvature; },
-            "Of the reference sphere; positive where the light runs from the exit pupil to the "
-            "centre, inf for a plane.")
-        .def_readonly("stop_radius_mm", &PythonWavefront::stop_radius_mm, "Unit of coordinates in the pupil.")
-        .def_readonly("wavelength_nm", &PythonWavefront::wavelength_nm)
+            "Radius of the reference sphere; positive if the light travels from the exit pupil to the "
+            "sphere's centre, inf for a plane.")
+        .def_readonly("stop_radius_mm", &PythonWavefront::stop_radius_mm,
+                      "Radius of the stop's bounding circle, the unit of pupil.")
+        .def_readonly("wavelength_nm", &PythonWavefront::wavelength_nm, "Wavelength.")
         .def("__repr__", [](W w) {
             return "<realcam.Wavefront " + counted(w.wavefront.opd.size(), "ray") + ", RMS " + digits(w.wavefront.rms) +
                    " waves, Strehl " + digits(w.wavefront.strehl) + '>';
         });
     static const std::string wavefront_text =
-        std::string(R"(The wavefront of one object point against a sphere, by real rays, in double precision.
+        std::string(
+            R"(Computes the wavefront of one object point relative to a reference sphere, by real rays, in double
+precision.
 )") + kFieldText +
-        R"(film_distance_mm: last vertex to the plane of the image point; None: the film.
-reference: the sphere's centre: "chief", where the chief ray (through the middle of the real stop) meets that plane, or
-  "centroid", of the spot there. Its radius is the distance from the chief ray's point to the exit pupil on that ray.
-exit_pupil: "real", where the chief ray crosses the axis (on the axis, the paraxial exit pupil), as in CODE V's
-  listings; or "paraxial", where it crosses the plane of the paraxial exit pupil, as in OpticStudio.
-remove: None; "tilt" or "focus" (tilt and focus) are fitted in x, y, x^2 + y^2 of the stop and taken away.
+        R"(film_distance_mm: distance from the last vertex to the plane of the image point; None: the film.
+reference: centre of the reference sphere. "chief": intersection of the chief ray (through the centre of the real stop)
+  with that plane; "centroid": centroid of the spot there. The sphere's radius is the distance along the chief ray from
+  its intersection to the exit pupil.
+exit_pupil: position of the exit pupil on the chief ray. "real": intersection with the axis (for a field on the axis,
+  the paraxial exit pupil), as in CODE V's listings; "paraxial": intersection with the plane of the paraxial exit
+  pupil, as in OpticStudio.
+remove: terms that are fitted over the stop and subtracted. None: no terms; "tilt": x and y; "focus": x, y and
+  x^2 + y^2.
 )" + kPatternText +
-        "Returns a Wavefront. Raises InputError where no ray passes, or no reference sphere can be laid.";
+        "Returns a Wavefront. Raises InputError if no ray passes, or no reference sphere exists.";
     lens.def("wavefront", &make_wavefront, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
              "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(),
              "reference"_a = "chief", "exit_pupil"_a = "real", "remove"_a = py::none(), "pattern"_a = "grid",
@@ -275,7 +294,10 @@ remove: None; "tilt" or "focus" (tilt and focus) are fitted in x, y, x^2 + y^2 o
 }
 
 void bind_spot(py::module_& m, PythonLens& lens) {
-    py::class_<Spot> spot(m, "Spot", "Where rays of one object point meet a plane behind the lens. mm from the axis.");
+    py::class_<Spot> spot(
+        m, "Spot",
+        R"(Spot diagram: intersections of the rays of one object point with a plane behind the lens, in
+mm from the axis. See Lens.spot.)");
     def_value(spot);
     def_rays(spot, [](const Spot& s) -> const FieldRays& { return s.rays; });
     spot.def_property_readonly(
@@ -284,7 +306,7 @@ void bind_spot(py::module_& m, PythonLens& lens) {
                 return table_of(s.points.size(), 2,
                                 [&](auto i, auto k) { return k == 0 ? s.points[i].x : s.points[i].y; });
             },
-            "(N, 2): x and y; nan where no ray passes.")
+            "(N, 2): intersection (x, y) of each ray; nan if the ray does not pass.")
         .def_property_readonly(
             "directions",
             [](const Spot& s) {
@@ -294,27 +316,34 @@ void bind_spot(py::module_& m, PythonLens& lens) {
                     return !s.rays.passes(i) ? kNone : k == 0 ? d.x : k == 1 ? d.y : d.z;
                 });
             },
-            "(N, 3), unit, of the rays where they meet the plane; nan where no ray passes.")
-        .def_property_readonly("centroid_mm", [](const Spot& s) { return std::pair(s.centroid.x, s.centroid.y); })
+            "(N, 3): unit direction of each ray behind the lens; nan if the ray does not pass.")
+        .def_property_readonly(
+            "centroid_mm", [](const Spot& s) { return std::pair(s.centroid.x, s.centroid.y); },
+            "(x, y) of the weighted mean of the intersections.")
         .def_property_readonly(
             "chief_ray_mm", [](const Spot& s) { return std::pair(s.chief.x, s.chief.y); },
-            "Of the ray through the middle of the stop, even where the lens blocks it.")
+            "(x, y) of the ray through the centre of the stop, even if the lens blocks it.")
         .def_property_readonly(
-            "rms_radius_mm", [](const Spot& s) { return s.about_centroid.rms_radius; }, "About the centroid.")
+            "rms_radius_mm", [](const Spot& s) { return s.about_centroid.rms_radius; },
+            "RMS distance of the intersections from the centroid.")
         .def_property_readonly(
-            "max_radius_mm", [](const Spot& s) { return s.about_centroid.max_radius; }, "About the centroid.")
-        .def_property_readonly("rms_radius_about_chief_ray_mm", [](const Spot& s) { return s.about_chief.rms_radius; })
-        .def_property_readonly("max_radius_about_chief_ray_mm", [](const Spot& s) { return s.about_chief.max_radius; })
+            "max_radius_mm", [](const Spot& s) { return s.about_centroid.max_radius; },
+            "Largest distance of an intersection from the centroid.")
+        .def_property_readonly(
+            "rms_radius_about_chief_ray_mm", [](const Spot& s) { return s.about_chief.rms_radius; },
+            "RMS distance of the intersections from that of the chief ray.")
+        .def_property_readonly(
+            "max_radius_about_chief_ray_mm", [](const Spot& s) { return s.about_chief.max_radius; },
+            "Largest distance of an intersection from that of the chief ray.")
         .def("__repr__", [](const Spot& s) {
             return "<realcam.Spot " + counted(s.points.size(), "ray") + ", RMS radius " +
                    digits(s.about_centroid.rms_radius) + " mm>";
         });
 
-    static const std::string spot_text =
-        std::string(
-            R"(The spot of one object point on the film, or on a plane at film_distance_mm behind the last vertex.
-)") + kFieldText +
-        kPatternText + "Returns a Spot. Raises InputError where no ray passes.";
+    static const std::string spot_text = std::string(
+                                             R"(Computes the spot diagram of one object point by real rays.
+)") + kFieldText + "film_distance_mm: distance from the last vertex to the plane of the spot; None: the film.\n" +
+                                         kPatternText + "Returns a Spot. Raises InputError if no ray passes.";
     lens.def("spot", &make_spot, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
              "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(),
              "pattern"_a = "hexapolar", "samples"_a = 6, "pupil"_a = py::none(), spot_text.c_str());

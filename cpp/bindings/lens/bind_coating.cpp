@@ -1,7 +1,7 @@
+// The Python classes Coating, CoatingLayer and CoatingResponse.
+
 #include <pybind11/complex.h>
 #include <pybind11/stl.h>
-
-#include <map>
 
 #include "../../optics/coating/coated_surface.hpp"
 #include "../../optics/prescription/coating.hpp"
@@ -30,8 +30,10 @@ namespace {
 
 using Array = py::array_t<double>;
 
+/// Names in the order of CoatingKind.
 constexpr const char* kKindNames[] = {"unknown", "bare", "layers", "metal", "reflectance"};
 
+/// Converts a sequence of (wavelength_nm, n, k); returns std::nullopt for other or empty sequences.
 std::optional<CoatingMaterial> points_from(const py::object& material) {
     try {
         CoatingMaterial result;
@@ -44,6 +46,7 @@ std::optional<CoatingMaterial> points_from(const py::object& material) {
     return std::nullopt;
 }
 
+/// Converts the material of a layer or a metal, see CoatingMaterialLike. Throws InputError.
 CoatingMaterial coating_material_from(const py::object& material) {
     if (PyComplex_Check(material.ptr())) {
         CoatingMaterial result = CoatingMaterial::constant(material.cast<std::complex<double>>());
@@ -56,7 +59,7 @@ CoatingMaterial coating_material_from(const py::object& material) {
         if (auto table = points_from(material)) return *table;
     } else if (material.is_none()) {
         throw InputError(
-            "a coating's material must be an index, a complex n + ik, (n_d, V_d), [(nm, n, k), ...], a "
+            "a coating's material must be an index, a complex n + ik, (n_d, V_d), [(wavelength_nm, n, k), ...], a "
             "name or a Glass");
     }
     return CoatingMaterial::transparent(glass_from(material));
@@ -81,7 +84,7 @@ Coating make_coating(
     const Typed<"complex | tuple[float, float] | Sequence[tuple[float, float, float]] | str | Glass | None">& metal,
     std::optional<double> reflectance, const std::string& name) {
     if (reflectance && (!layers.empty() || !metal.is_none()))
-        throw InputError("a stated reflectance leaves nothing to calculate: no layers and no metal go with it");
+        throw InputError("reflectance cannot be combined with layers or metal");
     Coating coating = reflectance       ? stated_reflectance(*reflectance, name)
                       : metal.is_none() ? layered_coating(layers, name)
                                         : metal_mirror(coating_material_from(metal), layers, name);
@@ -91,19 +94,19 @@ Coating make_coating(
 
 /// Response of a coating: arrays of the broadcast shape of angles and wavelengths.
 struct CoatingResponse {
-    using Shares = Typed<"NDArray[float64]">;
+    using Fractions = Typed<"NDArray[float64]">;
     using Amplitudes = Typed<"NDArray[complex128]">;
-    Shares reflectance_s, reflectance_p, transmittance_s, transmittance_p, absorptance_s, absorptance_p;
+    Fractions reflectance_s, reflectance_p, transmittance_s, transmittance_p, absorptance_s, absorptance_p;
     Amplitudes r_s, r_p, t_s, t_p;
 };
 
 CoatingResponse response(const Coating& coating, const ArrayLike& angle_deg, const ArrayLike& wavelength_nm,
                          const MediumLike& outside, const MediumLike& inside, bool from_inside) {
-    if (coating.kind == CoatingKind::unknown) throw InputError("of an unknown coating nothing can be said");
+    if (coating.kind == CoatingKind::unknown) throw InputError("an unknown coating has no response");
     const bool mirror = coating.is_for_mirrors();
     if (!mirror && inside.is_none())
-        throw InputError("inside, the material under the coating, is required; only a mirror has its own");
-    if (mirror && from_inside) throw InputError("no light comes from inside a mirror");
+        throw InputError("inside, the material under the coating, is required unless the coating is a mirror's");
+    if (mirror && from_inside) throw InputError("from_inside must be False for a mirror");
     const Glass out = glass_from(outside), in = mirror ? out : glass_from(inside);
     const py::tuple both = py::module_::import("numpy").attr("broadcast_arrays")(angle_deg, wavelength_nm);
     const InputArray<double> angles(both[0]), wavelengths(both[1]);
@@ -118,7 +121,7 @@ CoatingResponse response(const Coating& coating, const ArrayLike& angle_deg, con
     for (std::size_t i = 0; i < count; ++i) {
         if (i % 4096 == 0) heed_signals();
         const double angle = angles.data()[i], nm = wavelengths.data()[i];
-        if (!(angle >= 0 && angle <= 90)) throw InputError("angles of incidence lie between 0 and 90 degrees");
+        if (!(angle >= 0 && angle <= 90)) throw InputError("angle_deg must lie between 0 and 90");
         if (!(nm >= 100 && nm <= 20000)) throw InputError("the wavelength must lie between 100 and 20000 nm");
         if (!surface || nm != wavelength) {
             const double n_out = CoatingMaterial::transparent(out).index(nm).real();
@@ -163,9 +166,9 @@ struct RestoredCheck<CoatingResponse> {
         require_restored(py::isinstance<py::array>(r.reflectance_s));
         const auto first = py::reinterpret_borrow<py::array>(r.reflectance_s);
         const std::vector<py::ssize_t> shape(first.shape(), first.shape() + first.ndim());
-        for (const py::object* shares : {&r.reflectance_s, &r.reflectance_p, &r.transmittance_s, &r.transmittance_p,
-                                         &r.absorptance_s, &r.absorptance_p})
-            check_restored_array(*shares, {'f', shape});
+        for (const py::object* fractions : {&r.reflectance_s, &r.reflectance_p, &r.transmittance_s, &r.transmittance_p,
+                                            &r.absorptance_s, &r.absorptance_p})
+            check_restored_array(*fractions, {'f', shape});
         for (const py::object* amplitudes : {&r.r_s, &r.r_p, &r.t_s, &r.t_p})
             check_restored_array(*amplitudes, {'c', shape});
     }
@@ -175,20 +178,25 @@ namespace {
 
 void bind_response(py::module_& m) {
     py::class_<CoatingResponse> type(m, "CoatingResponse",
-                                     R"(What a coated surface does to light, as arrays of the shape of angles and
-wavelengths together. Shares of power; reflectance, transmittance and absorptance sum to 1.)");
+                                     R"(Reflection and transmission of a coated surface: arrays with the common
+(broadcast) shape of the angles and wavelengths. Fractions of the power; reflectance, transmittance and
+absorptance add up to 1. See Coating.response.)");
     def_result(type);
-    type.def_readonly("reflectance_s", &CoatingResponse::reflectance_s)
-        .def_readonly("reflectance_p", &CoatingResponse::reflectance_p)
-        .def_readonly("transmittance_s", &CoatingResponse::transmittance_s)
-        .def_readonly("transmittance_p", &CoatingResponse::transmittance_p)
-        .def_readonly("absorptance_s", &CoatingResponse::absorptance_s)
-        .def_readonly("absorptance_p", &CoatingResponse::absorptance_p)
+    type.def_readonly("reflectance_s", &CoatingResponse::reflectance_s, "Reflected fraction of s-polarised power.")
+        .def_readonly("reflectance_p", &CoatingResponse::reflectance_p, "Reflected fraction of p-polarised power.")
+        .def_readonly("transmittance_s", &CoatingResponse::transmittance_s,
+                      "Transmitted fraction of s-polarised power.")
+        .def_readonly("transmittance_p", &CoatingResponse::transmittance_p,
+                      "Transmitted fraction of p-polarised power.")
+        .def_readonly("absorptance_s", &CoatingResponse::absorptance_s, "Absorbed fraction of s-polarised power.")
+        .def_readonly("absorptance_p", &CoatingResponse::absorptance_p, "Absorbed fraction of p-polarised power.")
         .def_readonly("r_s", &CoatingResponse::r_s,
-                      "Complex amplitude of the electric field, light going as exp(i (k x - omega t)).")
-        .def_readonly("r_p", &CoatingResponse::r_p, "As r_s; at normal incidence r_p = -r_s.")
-        .def_readonly("t_s", &CoatingResponse::t_s)
-        .def_readonly("t_p", &CoatingResponse::t_p)
+                      R"(Complex reflection coefficient of the electric field for s-polarised light, with waves
+exp(i (k x - omega t)).)")
+        .def_readonly("r_p", &CoatingResponse::r_p,
+                      "Reflection coefficient for p-polarised light; at normal incidence r_p = -r_s.")
+        .def_readonly("t_s", &CoatingResponse::t_s, "Transmission coefficient for s-polarised light.")
+        .def_readonly("t_p", &CoatingResponse::t_p, "Transmission coefficient for p-polarised light.")
         .def("__repr__", [](const CoatingResponse& r) {
             return "<realcam.CoatingResponse of shape " + py::str(r.reflectance_s.attr("shape")).cast<std::string>() +
                    '>';
@@ -196,19 +204,18 @@ wavelengths together. Shares of power; reflectance, transmittance and absorptanc
 }
 
 void bind_layer(py::module_& m) {
-    py::class_<CoatingLayer> type(m, "CoatingLayer", "One homogeneous film.");
+    py::class_<CoatingLayer> type(m, "CoatingLayer", "One homogeneous thin film of a coating.");
     def_hashable_value(type);
     type.def(py::init(&make_layer), "material"_a, py::kw_only(), "thickness_nm"_a = py::none(),
              "thickness_waves"_a = py::none(), "design_wavelength_nm"_a = py::none(),
-             "material: index, complex n + ik (k > 0 absorbs), (n_d, V_d), [(wavelength_nm, n, k), ...] with straight "
-             "lines\n"
-             "between, \"aluminium\", \"silver\", glass name or Glass.\n"
-             "thickness_nm: physical. thickness_waves: optical, in waves of design_wavelength_nm; 0.25 is a quarter "
-             "wave.")
-        .def_readonly("thickness_nm", &CoatingLayer::thickness_nm)
+             R"(material: a refractive index; a complex index n + ik (k > 0 absorbs); (n_d, V_d); a list of
+(wavelength_nm, n, k), interpolated linearly; "aluminium"; "silver"; the name of a glass; or a Glass.
+Exactly one thickness must be specified. thickness_nm: physical thickness. thickness_waves: optical thickness in
+waves of design_wavelength_nm; 0.25 is a quarter wave. Raises InputError.)")
+        .def_readonly("thickness_nm", &CoatingLayer::thickness_nm, "Physical thickness.")
         .def(
             "index", [](const CoatingLayer& layer, double nm) { return layer.material.index(nm); }, "wavelength_nm"_a,
-            "Refractive index n + ik. Raises InputError at a wavelength at which it is not known.")
+            "Returns the complex refractive index n + ik. Raises InputError if it is unknown at that wavelength.")
         .def("__repr__", [](const CoatingLayer& layer) { return "<realcam.CoatingLayer " + text_of(layer) + '>'; });
 }
 
@@ -217,18 +224,20 @@ void bind_layer(py::module_& m) {
 void bind_coating(py::module_& m) {
     bind_response(m);
     bind_layer(m);
-    py::class_<Coating> type(m, "Coating", "What covers a surface of a lens. A value.");
+    py::class_<Coating> type(m, "Coating", "Coating of a lens surface: thin films, a metal, or a fixed reflectance.");
     def_hashable_value(type);
     type.def(py::init(&make_coating), "layers"_a = std::vector<CoatingLayer>{}, py::kw_only(), "metal"_a = py::none(),
              "reflectance"_a = py::none(), "name"_a = "",
-             "layers: CoatingLayers from the air inwards: the first touches the medium of the lower index at the d "
-             "line, the\n"
-             "last the glass or the metal. Empty: a bare surface.\n"
-             "metal: of a mirror, with or without layers; materials as CoatingLayer takes them.\n"
-             "reflectance: of a mirror, the share of the power that it reflects at every angle and wavelength.")
+             R"(layers: CoatingLayers from the air inwards. The first touches the medium with the lower index at the d
+line, the last touches the glass or the metal. Empty: a bare surface.
+metal: material of a mirror, with or without layers, as for CoatingLayer.
+reflectance: for a mirror without layers and metal: fraction of the power, 0 to 1, that is reflected at every angle
+and wavelength.
+name: name of the coating. Raises InputError.)")
         .def_static(
             "named", [](const std::string& name) { return coating_from(py::str(name)); }, "name"_a,
-            "\"bare\", \"quarter_wave\" (MgF2, 1.38, for 550 nm), \"aluminium\", \"silver\", or \"unknown\".")
+            R"(Returns the coating "bare", "quarter_wave" (a quarter wave of MgF2, index 1.38, at 550 nm), "aluminium",
+"silver" or "unknown". Raises InputError for other names.)")
         .def_static(
             "quarter_wave",
             [](const CoatingMaterialLike& material, double nm) {
@@ -236,18 +245,21 @@ void bind_coating(py::module_& m) {
                 return layered_coating({layer}, "quarter_wave");
             },
             "material"_a = kQuarterWaveIndex, "design_wavelength_nm"_a = kQuarterWaveDesign_nm,
-            "One layer that is a quarter of a wave thick at normal incidence.")
-        .def_readonly("name", &Coating::name)
+            "Returns a coating of one layer that is a quarter of a wave thick at normal incidence.")
+        .def_readonly("name", &Coating::name, "Name; may be empty.")
         .def_property_readonly(
             "kind", [](const Coating& c) { return kKindNames[static_cast<int>(c.kind)]; },
-            "unknown (not said), bare, layers, metal or reflectance.")
-        .def_readonly("layers", &Coating::layers)
+            "\"unknown\" (not specified), \"bare\", \"layers\", \"metal\" or \"reflectance\".")
+        .def_readonly("layers", &Coating::layers, "List of CoatingLayers, from the air inwards.")
         .def("response", &response, "angle_deg"_a, "wavelength_nm"_a, py::kw_only(), "outside"_a = py::none(),
              "inside"_a = py::none(), "from_inside"_a = false,
-             R"(Reflection and transmission by the characteristic matrix, for both polarisations.
-angle_deg: of incidence, 0 to 90, in the medium that the light comes from. Arrays are broadcast.
-outside, inside: materials on either side; None is air outside. from_inside: the light comes from there.
-Returns a CoatingResponse. Raises InputError, also at a wavelength at which a material is not known.)")
+             R"(Computes reflection and transmission for both polarisations by the characteristic matrix.
+angle_deg: angles of incidence, 0 to 90, in the medium from which the light comes. wavelength_nm: wavelengths, 100 to
+  20000. The two are broadcast together.
+outside: medium in front of the first layer; None: air. inside: medium behind the last layer, required unless the
+  coating is a mirror's. Both as for Surface(material=...).
+from_inside: True if the light comes from the medium inside.
+Returns a CoatingResponse. Raises InputError, also if a material is unknown at a wavelength.)")
         .def("__repr__", [](const Coating& coating) { return text_of(coating); });
 }
 

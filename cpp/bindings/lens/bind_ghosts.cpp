@@ -1,3 +1,5 @@
+// Ghosts of a lens: the class Ghost, Lens.ghost and Lens.ghosts.
+
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -18,6 +20,7 @@ using namespace py::literals;
 
 namespace {
 
+/// Ghost as Python exposes it; see the docstrings. Lengths in mm.
 struct Ghost {
     int first, second;
     double effective_focal_length, back_focal_distance;
@@ -31,7 +34,7 @@ Ghost ghost_of(const LensSystem& lens, GhostPair pair, double wavelength_nm, std
 
 std::vector<Ghost> ghosts_of(const LensSystem& lens, double film_reflectance) {
     if (!(film_reflectance >= 0 && film_reflectance <= 1))
-        throw InputError("film_reflectance must be a share from 0 to 1");
+        throw InputError("film_reflectance must lie between 0 and 1");
     const double film_radius = 0.5 * hypotenuse(lens.film_width, lens.film_height);
     const GhostTables tables(lens, film_radius, {true, film_reflectance, 0}, fast_pupil_tracer(), nullptr);
     std::vector<Ghost> ghosts;
@@ -52,19 +55,20 @@ struct RestoredCheck<Ghost> {
 
 void bind_ghosts(py::module_& m) {
     py::class_<Ghost> ghost(m, "Ghost",
-                            R"(Light that two surfaces reflect on its way to the film: first `first`, back towards the
-scene, then `second`, in front of it. Surfaces are numbered from 0, as in Lens.surfaces; the film has the number
-behind the last one's.)");
+                            R"(Ghost image: light that two surfaces reflect on its way to the film. Surface `first`
+reflects it back towards the scene, then surface `second`, in front of `first`, forward again. Indices as in
+Lens.surfaces; the index of the film is the number of surfaces.)");
     def_hashable_value(ghost);
-    ghost.def_readonly("first", &Ghost::first)
-        .def_readonly("second", &Ghost::second)
-        .def_readonly("effective_focal_length_mm", &Ghost::effective_focal_length)
+    ghost.def_readonly("first", &Ghost::first, "Index of the surface that the light reaches first, or of the film.")
+        .def_readonly("second", &Ghost::second, "Index of the surface in front of it that reflects the light again.")
+        .def_readonly("effective_focal_length_mm", &Ghost::effective_focal_length,
+                      "Focal length of the optical path with both reflections.")
         .def_readonly("back_focal_distance_mm", &Ghost::back_focal_distance,
-                      "Last vertex to where the ghost of a point at infinity is sharp; negative in front of it.")
+                      "Distance from the last vertex to the ghost of a point at infinity; negative in front of it.")
         .def_readonly("share", &Ghost::share,
-                      R"(What it brings to the film of the light that the lens itself brings there, of light that comes
-from all sides alike: its brightness in veiling glare, and about that of a lamp's ghost over the film. None where
-Lens.ghost made it.)")
+                      R"(Light that the ghost path brings to the film, relative to the light of the direct path, for a
+scene of uniform radiance: its contribution to veiling glare, and roughly the relative brightness of a lamp's ghost
+that spreads over the film. None if the ghost is the result of Lens.ghost.)")
         .def("__repr__", [](const Ghost& g) {
             return "<realcam.Ghost of surfaces " + std::to_string(g.first) + " and " + std::to_string(g.second) +
                    ", focal length " + digits(g.effective_focal_length) + " mm, back focal distance " +
@@ -77,15 +81,17 @@ Lens.ghost made it.)")
                 return ghost_of(lens, {first, second}, wavelength_or_design(lens, nm));
             },
             "first"_a, "second"_a, py::kw_only(), "wavelength_nm"_a = py::none(),
-            R"(The ghost of light that surface `first` reflects back, and surface `second`, in front of it, forward
-again. Surfaces are numbered from 0, as in Lens.surfaces; `first` may be the film, with the number behind the last
-one's. Paraxial (R. H. Abd El-Maksoud and J. M. Sasian, Proc. SPIE 7428, 742807, 2009). Raises InputError where the
-two are not refracting surfaces, or the film and one, in that order.)")
+            R"(Returns the Ghost of light that surface `first` reflects back and surface `second`, in front of it,
+forward again, with paraxial data (R. H. Abd El-Maksoud and J. M. Sasian, Proc. SPIE 7428, 742807, 2009).
+first, second: indices as in Lens.surfaces; first may be the film, whose index is the number of surfaces.
+wavelength_nm: None: the design wavelength.
+Raises InputError unless both are refracting surfaces, or the film and a refracting surface, in that order.)")
         .def("ghosts", &ghosts_of, py::kw_only(), "film_reflectance"_a = 0,
-             R"(All ghosts that reach the lens's film at the design wavelength, the brightest first, with their shares:
-by rays through both reflections, with the reflectances of light along the axis. Surfaces of unknown
-coating count as bare. With a film that reflects some share of the light as a mirror does, also those of film and
-surface. Raises InputError where an index is not known.)");
+             R"(Returns the list of all ghosts that reach the lens's film at the design wavelength, the brightest first,
+with their shares. Computed with rays through both reflections, and reflectances for light along the axis; surfaces of
+unknown coating count as bare.
+film_reflectance: specular reflectance of the film, 0 to 1; above 0 the list includes ghosts of film and surface.
+Raises InputError if a refractive index is unknown.)");
 }
 
 }  // namespace realcam::bindings

@@ -1,3 +1,5 @@
+// The Python class Glass.
+
 #include <pybind11/stl.h>
 
 #include "../../io/lens/lens_glass.hpp"
@@ -42,7 +44,8 @@ std::string glass_text(const Glass& glass) {
 }
 
 void bind_glass(py::module_& m) {
-    py::class_<Glass> glass(m, "Glass", "An optical medium: refractive index relative to air, by wavelength.");
+    py::class_<Glass> glass(m, "Glass",
+                            "Optical medium: refractive index relative to air as a function of wavelength.");
     def_hashable_value(glass);
     glass
         .def_static(
@@ -52,22 +55,25 @@ void bind_glass(py::module_& m) {
                     throw InputError("expected a refractive index of at least 1");
                 return Glass::constant(index);
             },
-            "index"_a, "The same index at every wavelength.")
-        .def_static(
-            "from_abbe_number", &Glass::from_abbe_number, "n_d"_a, "abbe_number"_a,
-            R"(Two-term Cauchy glass with this index at the d line and this Abbe number V_d = (n_d - 1)/(n_F - n_C).
-Raises InputError for an index below 1 or a number that is not positive.)")
+            "index"_a, "Returns a medium with the same index at every wavelength. Raises InputError below 1.")
+        .def_static("from_abbe_number", &Glass::from_abbe_number, "n_d"_a, "abbe_number"_a,
+                    R"(Returns a two-term Cauchy glass with this index at the d line and this Abbe number
+V_d = (n_d - 1)/(n_F - n_C). Raises InputError for an index below 1 or an Abbe number that is not positive.)")
         .def_static("cauchy", &Glass::cauchy, "coefficients"_a,
-                    "n = A + B/l^2 + C/l^4 + ..., l in um. Raises InputError where there is no coefficient.")
+                    "Returns a glass with n = A + B/l^2 + C/l^4 + ..., l the wavelength in um. coefficients: [A, B, "
+                    "C, ...]. Raises InputError if the list is empty.")
         .def_static(
             "sellmeier",
             [](const std::vector<double>& b, const std::vector<double>& c) {
-                if (b.size() != c.size() || b.empty()) throw InputError("sellmeier needs equally many B and C");
+                if (b.size() != c.size() || b.empty())
+                    throw InputError("B and C must have the same number of coefficients, at least one");
                 std::vector<Glass::SellmeierTerm> terms;
                 for (std::size_t i = 0; i < b.size(); ++i) terms.push_back({b[i], c[i]});
                 return Glass::sellmeier(terms);
             },
-            "B"_a, "C"_a, "n^2 = 1 + sum B l^2/(l^2 - C), l in um, C in um^2.")
+            "B"_a, "C"_a,
+            "Returns a glass with n^2 = 1 + sum of B l^2/(l^2 - C), l the wavelength in um, C in um^2. Raises "
+            "InputError.")
         .def_static(
             "table",
             [](const std::vector<std::pair<double, double>>& points) {
@@ -75,13 +81,18 @@ Raises InputError for an index below 1 or a number that is not positive.)")
                 for (const auto& [wavelength, index] : points) list.push_back({wavelength, index});
                 return Glass::table(std::move(list));
             },
-            "points"_a, "Interpolated (wavelength_nm, index) pairs.")
-        .def_static("named", &io::catalogue_glass, "name"_a,
-                    "A glass of the catalogue, \"N-BK7\" or \"schott:F4\". Raises InputError with the nearest names.")
-        .def("index", &Glass::index, "wavelength_nm"_a, "Refractive index.")
-        .def_readonly("label", &Glass::label, "As it was written: a name, a number, a pair; empty for air.")
+            "points"_a, "Returns a glass interpolated between (wavelength_nm, index) pairs. Raises InputError.")
+        .def_static(
+            "named", &io::catalogue_glass, "name"_a,
+            "Returns a glass of the catalogue, such as \"N-BK7\" or \"schott:F4\". Raises InputError with the most "
+            "similar names.")
+        .def("index", &Glass::index, "wavelength_nm"_a,
+             "Returns the refractive index relative to air; nan if the formula has no real value at that wavelength.")
+        .def_readonly("label", &Glass::label,
+                      "Name, index or pair from which the glass was created, as text; empty for air.")
         .def("__repr__", [](const Glass& g) { return "<realcam.Glass " + glass_text(g) + '>'; });
-    m.def("glass_names", &io::catalogue_full_names, "Names of the glasses of the catalogue, as \"schott:N-BK7\".");
+    m.def("glass_names", &io::catalogue_full_names,
+          "Returns the names of the glasses of the catalogue, such as \"schott:N-BK7\".");
 }
 
 }  // namespace realcam::bindings

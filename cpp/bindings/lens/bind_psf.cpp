@@ -1,3 +1,5 @@
+// Lens.psf with the class PSF, and the transmission of a lens.
+
 #include <pybind11/complex.h>
 #include <pybind11/stl.h>
 
@@ -56,7 +58,7 @@ PsfMethod method_from(const std::string& name) {
     throw InputError("unknown method \"" + name + "\"; expected direct, fft or geometric");
 }
 
-/// Computes the PSF with numpy's FFT.
+/// Computes the PSF with numpy's FFT. Must be called with the GIL.
 Psf psf_by_fft(const LensSystem& lens, const PsfRequest& request) {
     std::vector<PsfPupil> pupils;
     Psf psf;
@@ -67,23 +69,24 @@ Psf psf_by_fft(const LensSystem& lens, const PsfRequest& request) {
         psf = std::move(started);
         for (const psf_detail::ColourPart& part : parts) pupils.push_back(psf_pupil(part, psf, loop));
     }
-    const py::object inverse = py::module_::import("numpy.fft").attr("ifft2");
-    double ideal = 0;
+    const py::object inverse_fft = py::module_::import("numpy.fft").attr("ifft2");
+    double in_phase_peak = 0;  // peak value if all rays were in phase, for the Strehl ratio
     for (const PsfPupil& pupil : pupils) {
         const auto n = static_cast<std::size_t>(pupil.size);
         const auto size = static_cast<std::size_t>(psf.size), first = n - size / 2;
         const py::array_t<std::complex<double>> sums =
-            inverse(array_from(pupil.values, {pupil.size, pupil.size}), "norm"_a = "forward");
+            inverse_fft(array_from(pupil.values, {pupil.size, pupil.size}), "norm"_a = "forward");
         const std::complex<double>* from = sums.data();
+        // The transform has frequency 0 at index 0; the PSF has it at size / 2.
         for (std::size_t y = 0; y < size; ++y)
             for (std::size_t x = 0; x < size; ++x)
                 psf.values[y * size + x] += pupil.scale * std::norm(from[(first + y) % n * n + (first + x) % n]);
         double amplitude = 0;
         for (const std::complex<double>& value : pupil.values) amplitude += std::abs(value);
-        ideal += pupil.scale * amplitude * amplitude;
+        in_phase_peak += pupil.scale * amplitude * amplitude;
         psf.rays += std::count_if(pupil.values.begin(), pupil.values.end(), [](auto v) { return v != 0.0; });
     }
-    psf.strehl = *std::max_element(psf.values.begin(), psf.values.end()) / ideal;
+    psf.strehl = *std::max_element(psf.values.begin(), psf.values.end()) / in_phase_peak;
     return psf;
 }
 
@@ -140,72 +143,78 @@ Typed<"tuple[NDArray[float64], NDArray[float64], NDArray[float64]]", py::tuple> 
 
 void bind_psf(py::module_& m) {
     py::class_<Psf> psf(m, "PSF",
-                        "Point spread function: where the light of one object point goes on the film, as a square of "
-                        "points (docs/psf.md).");
+                        "Point spread function: distribution of the light of one object point on the film, on a square "
+                        "grid of points (docs/psf.md).");
     def_value(psf);
     psf.def_property_readonly(
            "values", [](const Psf& p) { return array_from(p.values, {p.size, p.size}); },
-           R"((size, size): share of the light that passes the lens, per um^2; their sum times pitch_um^2 is 1 over the
-whole film. Rows from the lowest y, columns from the lowest x.)")
-        .def_readonly("pitch_um", &Psf::pitch_um, "From point to point.")
-        .def_property_readonly("x_um", &pixel_positions_um, "(size,): of the columns, from the array's middle.")
+           R"((size, size): fraction of the light that passes the lens, per um^2; over the whole film the values times
+pitch_um^2 add up to 1. Rows from the lowest y, columns from the lowest x.)")
+        .def_readonly("pitch_um", &Psf::pitch_um, "Distance between neighbouring points.")
+        .def_property_readonly("x_um", &pixel_positions_um, "(size,): x of the columns, relative to centre_mm.")
         .def_property_readonly("y_um", &pixel_positions_um,
-                               "(size,): of the rows; a positive field lies in the y-z plane.")
+                               "(size,): y of the rows, relative to centre_mm; field_deg lies in the y-z plane.")
         .def_property_readonly(
             "centre_mm", [](const Psf& p) { return std::pair(p.centre_mm.x, p.centre_mm.y); },
-            "(x, y) on the film, from the axis: of the point at x_um = y_um = 0.")
-        .def_property_readonly("wavelength_nm", &mean_wavelength, "The mean of several, by their weights.")
+            "(x, y) on the film, from the axis, of the point with x_um = y_um = 0.")
+        .def_property_readonly("wavelength_nm", &mean_wavelength, "Weighted mean of the wavelengths.")
         .def_property_readonly(
             "wavelengths_nm",
-            [](const Psf& p) { return array_of(p.colours.size(), [&](auto i) { return p.colours[i].wavelength_nm; }); })
+            [](const Psf& p) { return array_of(p.colours.size(), [&](auto i) { return p.colours[i].wavelength_nm; }); },
+            "(N,): wavelengths.")
         .def_property_readonly(
             "weights",
             [](const Psf& p) { return array_of(p.colours.size(), [&](auto i) { return p.colours[i].weight; }); },
-            "(N,): shares of the light, whose sum is 1.")
+            "(N,): fraction of the light at each wavelength; the sum is 1.")
         .def_readonly("strehl", &Psf::strehl,
-                      "Largest value over that of the same rays all in phase; nan for the method \"geometric\".")
-        .def_readonly("rays", &Psf::rays, "Of all wavelengths.")
+                      "Strehl ratio: largest value over that of the same rays all in phase; nan for the method "
+                      "\"geometric\".")
+        .def_readonly("rays", &Psf::rays, "Number of rays, summed over all wavelengths.")
         .def_property_readonly(
             "energy",
             [](const Psf& p) {
                 return std::accumulate(p.values.begin(), p.values.end(), 0.0) * p.pitch_um * p.pitch_um;
             },
-            "Share of the light on the array: the rest falls beside it.")
+            "Fraction of the light that falls on the array, 0 to 1.")
         .def(
             "energy_inside",
             [](const Psf& p, double radius_um, std::pair<double, double> about_um) {
                 return energy_inside(p, radius_um, {about_um.first, about_um.second});
             },
             "radius_um"_a, "about_um"_a = std::pair(0.0, 0.0),
-            "Share of the light within a circle about a point (x, y), as far as the array reaches.")
+            "Returns the fraction of the light within a circle about the point about_um, (x, y) relative to centre_mm. "
+            "Light outside of the array is not counted.")
         .def("mtf", &mtf, "frequencies_per_mm"_a = py::none(),
-             R"(Modulation transfer: (frequencies per mm, tangential, sagittal), three arrays of shape (N,). Tangential
-is the contrast of lines across y, sagittal of lines across x. None: 0 to half of one over pitch_um.)")
+             R"(Returns the modulation transfer function as (frequencies_per_mm, tangential, sagittal), arrays of shape
+(N,). Tangential: contrast of a line pattern that varies along y; sagittal: along x.
+frequencies_per_mm: (N,); None: from 0 to half of 1 / pitch_um.)")
         .def("__repr__", [](const Psf& p) {
             return "<realcam.PSF " + std::to_string(p.size) + " x " + std::to_string(p.size) + ", pitch " +
                    digits(p.pitch_um) + " um, Strehl " + digits(p.strehl) + '>';
         });
     static const std::string text =
-        R"(Point spread function: the light of one object point on the film, with diffraction, from the exact wavefront.
-field_deg, film_mm, object_distance_m: as for wavefront.
-wavelength_nm: one or several, whose light is added; None is the design wavelength. weights: of several, None: equal.
-method: "direct", the sum of the rays as plane waves, for any wavefront; "fft", the same by a Fourier transform, where
-  the wavefront is not too steep for one; "geometric", the rays themselves, without diffraction.
-size: points across the array. pitch_um: from one to the next; None is a quarter of wavelength x f-number, up to half of
-  it for a spot that is larger than the array.
-film_distance_mm: last vertex to the plane of the PSF; None: the film.
-centre: of the array: "chief", where the chief ray of the first wavelength meets that plane, or "centroid", of the spot.
-rays: at least so many for each wavelength; None: as many as the wavefront and the array need. Not used by "fft".
-Returns a PSF. Raises InputError where no light passes, a glass is not known at a wavelength, or the rays given cannot
-follow the wavefront.)";
+        R"(Computes the point spread function (PSF) of one object point on the film from the exact wavefront.
+field_deg, film_mm, object_distance_m: field point, see Lens.wavefront.
+wavelength_nm: a wavelength, or several, whose PSFs are added incoherently; None: the design wavelength.
+weights: relative amount of light at each wavelength; None: equal.
+method: "direct": sum of the rays as plane waves, for any wavefront; "fft": the same sum by a Fourier transform, for
+  wavefronts that are not too steep; "geometric": density of the rays, without diffraction.
+size: number of points across the array.
+pitch_um: distance between points; None: a quarter of wavelength x f-number, or up to half of it if the spot is larger
+  than the array.
+film_distance_mm: distance from the last vertex to the plane of the PSF; None: the film.
+centre: centre of the array. "chief": intersection of the first wavelength's chief ray with that plane; "centroid":
+  centroid of the spot.
+rays: minimum number of rays for each wavelength; None: as many as the wavefront and the array require. Not used by
+  "fft".
+Returns a PSF. Raises InputError if no light passes, a glass is unknown at a wavelength, or the number of rays is too
+small for the wavefront.)";
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("psf", &make_psf, "field_deg"_a = 0.0, "wavelength_nm"_a = py::none(), py::kw_only(),
              "method"_a = "direct", "size"_a = 128, "pitch_um"_a = py::none(), "object_distance_m"_a = py::none(),
              "film_mm"_a = py::none(), "film_distance_mm"_a = py::none(), "centre"_a = "chief", "rays"_a = py::none(),
              "weights"_a = py::none(), text.c_str());
 }
-
-using namespace py::literals;
 
 namespace {
 
@@ -227,28 +236,28 @@ double transmission(const LensSystem& lens, double field_deg, std::optional<doub
 void bind_transmission(py::module_& m) {
     static const std::string text =
         std::string(
-            R"(Share of the power of unpolarised light that the lens lets through, of the light of one object point that passes
-the rims: the mean over the part of the stop that it fills. Fresnel's or the films' losses at every surface; glass
-itself absorbs nothing here. Surfaces of which the lens does not say how they are coated (unknown_coatings) are taken
-for bare glass, mirrors for perfect ones.
+            R"(Computes the transmittance of the lens for unpolarised light of one object point: the mean over the part
+of the stop that the light fills, without the rays that the rims block. It includes the losses by Fresnel reflection or
+by the coating at every surface, but no absorption in glass. Surfaces without a specified coating (unknown_coatings)
+count as bare glass or as perfect mirrors.
 )") + kFieldText +
-        R"(polarisation: "traced" follows both polarisations through the lens; "averaged" takes the mean of s and p at each
-  surface, as if light were unpolarised between them.
+        R"(polarisation: "traced" follows both polarisations through the lens; "averaged" takes the mean of s and p at
+  each surface, as if the light were unpolarised between surfaces.
 )" + kPatternText +
-        "Raises InputError where no ray passes, or a material is not known at that wavelength.";
+        "Returns a fraction, 0 to 1. Raises InputError if no ray passes, or a material is unknown at the wavelength.";
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("transmission", &transmission, "field_deg"_a = 0.0, "wavelength_nm"_a = py::none(), py::kw_only(),
              "object_distance_m"_a = py::none(), "polarisation"_a = "traced", "pattern"_a = "rings", "samples"_a = 8,
              "pupil"_a = py::none(), text.c_str())
         .def_property_readonly(
             "t_stop", [](const LensSystem& lens) { return t_stop(lens, lens.wavelength_nm); },
-            R"(f-number / sqrt(transmittance) at the design wavelength, the transmittance being that of the ray along
-the axis times the share of the pupil that no central obstruction takes: the f-number of a lens without losses that
-gives as bright a picture there. inf where the lens has no f-number.)")
+            R"(T-stop: f-number / sqrt(transmittance) at the design wavelength, which is the f-number of a lossless lens
+with the same exposure at the centre of the picture. The transmittance is that of the axial ray, times the fraction of
+the pupil that is not centrally obstructed. inf if the lens has no f-number.)")
         .def_property_readonly(
             "unknown_coatings", &surfaces_with_unknown_coating,
-            R"(Indices of the surfaces of which the lens does not say how they are coated: glass in air, taken for bare,
-and mirrors, taken for perfect. Cemented faces are bare without being said so.)");
+            R"(Indices of the surfaces without a specified coating: faces between glass and air, which count as bare,
+and mirrors, which count as perfect. Cemented faces are not listed; they are bare.)");
 }
 
 }  // namespace realcam::bindings

@@ -1,3 +1,5 @@
+// The tabulated exit pupil of a lens, for the exporter realcam.mitsuba.
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -19,10 +21,12 @@ using namespace py::literals;
 
 namespace {
 
+/// Contents of a PupilView (see pupil_view.hpp) as flat arrays.
 struct PupilArrays {
-    std::vector<float> nodes, outline;
+    std::vector<float> nodes;  ///< (rows + 1, 3): members of PupilNode
+    std::vector<float> outline;  ///< (rows, sectors, 5): members of PupilSector
     py::ssize_t rows, sectors;
-    double image_radius_mm;
+    double image_radius_mm;  ///< film radius beyond which no light arrives
 };
 
 PupilArrays pupil_arrays(const LensSystem& lens, double film_radius_mm, const std::vector<double>& wavelengths_nm) {
@@ -57,16 +61,19 @@ void bind_pupil_table(py::module_& m) {
                                   found.image_radius_mm);
         },
         "lens"_a, "film_radius_mm"_a, "wavelengths_nm"_a,
-        R"(Where points of the film get light from, as samples are drawn from it (PupilView): nodes (rows + 1, 3),
-sectors (rows, sectors, 5), and the radius beyond which there is none, mm. wavelengths_nm: it holds what passes at
-any of these. Raises InputError for lenses that are not of revolution, and glasses not known there.)");
+        R"(Internal. Tabulates the exit pupil as seen from film radii up to film_radius_mm, from which rays are sampled
+(PupilView in pupil_view.hpp). Returns nodes (rows + 1, 3), sectors (rows, sectors, 5), and the film radius in mm beyond
+which no light arrives. wavelengths_nm: the table contains all light that passes at any of these. Raises InputError for
+a lens that is not rotationally symmetric, and if a glass is unknown at a wavelength.)");
     m.def(
         "_iris_apothem_mm",
         [](const LensSystem& lens) -> std::optional<double> {
             if (lens.iris.blades == 0 || lens.is_wide_open()) return std::nullopt;
             return open_iris(lens.iris, lens.stop_semi_diameter, lens.stop().clear_semi_diameter).apothem;
         },
-        "lens"_a, "Distance from the axis to the middle of a blade's edge; None where no blade is in the light.");
+        "lens"_a,
+        "Internal. Returns the distance from the axis to the middle of a blade's edge; None if no blade is in the "
+        "light.");
 }
 
 }  // namespace realcam::bindings

@@ -1,3 +1,5 @@
+// Lens.trace, on the CPU or a GPU, and the enumeration RayStatus.
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -35,7 +37,7 @@ struct TraceOptions {
     LightDirection direction;
     double wavelength_nm;
     Precision precision;
-    int surface_count;
+    int surface_count;  ///< -1: all surfaces
     bool transmission;
 };
 
@@ -52,6 +54,7 @@ TraceOptions options_of(const LensSystem& lens, std::optional<double> wavelength
             surface_count.value_or(-1), transmission};
 }
 
+/// Returns the number of rays N. Throws InputError unless both arrays have the shape (N, 3).
 std::int64_t ray_count(const Doubles& origins, const Doubles& directions) {
     const bool fits = origins.ndim() == 2 && origins.shape(1) == 3 && directions.ndim() == 2 &&
                       directions.shape(1) == 3 && origins.shape(0) == directions.shape(0);
@@ -59,8 +62,8 @@ std::int64_t ray_count(const Doubles& origins, const Doubles& directions) {
     return origins.shape(0);
 }
 
-/// Returns an array (N,), or None if it is not requested. Computed in double precision whatever the precision of the
-/// trace.
+/// Returns the transmission as an array (N,), or None if it is not requested. It is computed in double precision
+/// whatever the precision of the trace.
 py::object transmission_of(const LensSystem& lens, const Doubles& origins, const Doubles& directions,
                            const TraceOptions& options) {
     if (!options.transmission) return py::none();
@@ -80,13 +83,14 @@ py::object transmission_of(const LensSystem& lens, const Doubles& origins, const
     return result;
 }
 
+/// Traces rays in host memory. `gpu`: number of the GPU that computes; std::nullopt: the CPU.
 TraceResult trace_host_arrays(const LensSystem& lens, const Doubles& origins, const Doubles& directions,
                               const TraceOptions& options, std::optional<int> gpu) {
     const std::int64_t count = ray_count(origins, directions);
-    py::array_t<double> to({count, std::int64_t{3}}), towards({count, std::int64_t{3}}), path(count);
+    py::array_t<double> end_points({count, std::int64_t{3}}), end_directions({count, std::int64_t{3}}), path(count);
     py::array_t<int> status(count), surface(count);
-    const TracedRays out{to.mutable_data(), towards.mutable_data(), path.mutable_data(), status.mutable_data(),
-                         surface.mutable_data()};
+    const TracedRays out{end_points.mutable_data(), end_directions.mutable_data(), path.mutable_data(),
+                         status.mutable_data(), surface.mutable_data()};
     {
         const Unlocked unlocked;
         if (gpu)
@@ -96,22 +100,23 @@ TraceResult trace_host_arrays(const LensSystem& lens, const Doubles& origins, co
             trace_rays(lens, options.direction, options.wavelength_nm, options.precision, options.surface_count, count,
                        origins.data(), directions.data(), out, nullptr, heed_signals);
     }
-    return {to, towards, path, status, surface, transmission_of(lens, origins, directions, options)};
+    return {end_points, end_directions, path, status, surface, transmission_of(lens, origins, directions, options)};
 }
 
 /// Returns the GPU that holds both inputs. Throws InputError if `device` names another one.
 int gpu_of(const DeviceInput& origins, const DeviceInput& directions, const std::optional<std::string>& device) {
-    const int from = origins.numbers.ordinal, along = directions.numbers.ordinal, there = std::max(from, along);
-    if (from >= 0 && along >= 0 && from != along)
-        throw InputError("origins_mm lies on cuda:" + std::to_string(from) +
-                         " and directions on cuda:" + std::to_string(along) + "; both must lie on the same device");
-    const bool any = !device || *device == "auto" || *device == "cuda";
-    if (there >= 0 && any) return there;
-    const std::optional<int> asked = gpu_for_rays(any ? "cuda" : *device);
-    if (!asked || (there >= 0 && *asked != there))
-        throw InputError("the rays lie on " + (there >= 0 ? "cuda:" + std::to_string(there) : std::string("a GPU")) +
-                         ", and device is \"" + *device + "\"; rays are traced where they lie");
-    return *asked;
+    const int origins_gpu = origins.numbers.ordinal, directions_gpu = directions.numbers.ordinal;
+    const int gpu = std::max(origins_gpu, directions_gpu);  // -1 if both arrays are empty
+    if (origins_gpu >= 0 && directions_gpu >= 0 && origins_gpu != directions_gpu)
+        throw InputError("origins_mm lies on cuda:" + std::to_string(origins_gpu) + " and directions on cuda:" +
+                         std::to_string(directions_gpu) + "; both must lie on the same device");
+    const bool any_gpu = !device || *device == "auto" || *device == "cuda";
+    if (gpu >= 0 && any_gpu) return gpu;
+    const std::optional<int> requested = gpu_for_rays(any_gpu ? "cuda" : *device);
+    if (!requested || (gpu >= 0 && *requested != gpu))
+        throw InputError("the rays lie on " + (gpu >= 0 ? "cuda:" + std::to_string(gpu) : std::string("a GPU")) +
+                         ", and device is \"" + *device + "\"; device must be the one that holds the rays");
+    return *requested;
 }
 
 TraceResult trace_device_arrays(const LensSystem& lens, const DeviceInput& origins, const DeviceInput& directions,
@@ -119,7 +124,7 @@ TraceResult trace_device_arrays(const LensSystem& lens, const DeviceInput& origi
     if (origins.count != directions.count)
         throw InputError("origins_mm and directions must both be arrays of shape (N, 3)");
     if (options.transmission)
-        throw InputError("transmission is worked out for arrays of the host only, and these lie on a GPU");
+        throw InputError("transmission=True requires arrays in host memory, and these lie on a GPU");
     ForeignNumbers from = origins.numbers, along = directions.numbers;
     from.ordinal = along.ordinal = gpu_of(origins, directions, device);
     const TracedArrays traced = [&] {
@@ -173,39 +178,43 @@ void bind_trace(py::module_& m) {
     m.attr("RayStatus") = py::module_::import("enum").attr("IntEnum")("RayStatus", values, "module"_a = "realcam");
     py::class_<TraceResult> result(
         m, "TraceResult",
-        "Rays after a lens, lens frame. Arrays of numpy; DeviceArrays where the rays came in a GPU's memory.");
+        "Rays behind a lens, in the lens frame: numpy arrays, or DeviceArrays if the input was in a GPU's memory. See "
+        "Lens.trace.");
     def_result(result);
     result
         .def_readonly(
             "origins_mm", &TraceResult::origins_mm,
-            "(N, 3): on the last surface met. Of a ray whose status is not OK, where it ended: ask status before "
-            "you use it.")
-        .def_readonly("directions", &TraceResult::directions, "(N, 3), unit.")
-        .def_readonly("optical_path_mm", &TraceResult::optical_path_mm, "(N,): index times distance, from the origin.")
+            "(N, 3): intersection with the last surface that the ray reached. If status is not OK, that is the point "
+            "where the ray ended.")
+        .def_readonly("directions", &TraceResult::directions, "(N, 3): unit directions behind that surface.")
+        .def_readonly("optical_path_mm", &TraceResult::optical_path_mm,
+                      "(N,): optical path length (index times distance) from the ray's origin.")
         .def_readonly("status", &TraceResult::status, "(N,): RayStatus values.")
         .def_readonly("surface_index", &TraceResult::surface_index,
-                      "(N,): surface at which the ray ended, from 0; -1: bad input.")
+                      "(N,): index of the last surface that the ray reached, from 0; -1 for BAD_INPUT.")
         .def_readonly(
             "transmission", &TraceResult::transmission,
-            R"((N,): share of the power of unpolarised light that is left, 0 where the status is not OK; None where it
-was not asked for.)")
+            R"((N,): transmitted fraction of the power of unpolarised light; 0 if status is not OK. None if it was not
+requested.)")
         .def("__repr__",
              [](const TraceResult& r) { return "<realcam.TraceResult " + counted(py::len(r.status), "ray") + '>'; });
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("trace", &trace, "origins_mm"_a, "directions"_a, py::kw_only(), "wavelength_nm"_a = py::none(),
              "start"_a = "film", "dtype"_a = "float64", "surface_count"_a = py::none(), "device"_a = py::none(),
              "transmission"_a = false,
-             R"(Traces rays surface by surface. origins_mm, directions: (N, 3), lens frame.
-start: "film" (towards the scene) or "scene" (towards the film).
-dtype: number type of the computation, float64 or float32; results are float64 arrays.
-surface_count: cross only the first so many surfaces that the light meets; None: all.
-device: for arrays of the host the CPU (None, "cpu"), a GPU ("cuda", "cuda:1"), or a GPU if there is
-one ("auto"); results are arrays of numpy. Arrays with __cuda_array_interface__ or __dlpack__ in a GPU's
-memory (torch, cupy, DeviceArray: float64 or float32, contiguous) are traced where they lie, and the
-results are DeviceArrays.
-transmission: work out transmission too, by polarisation ray tracing in float64, as Lens.transmission does; for
-arrays of the host.
-Returns a TraceResult. Raises InputError for wrong shapes, DeviceError; single bad rays end as BAD_INPUT.)");
+             R"(Traces rays through the lens, surface by surface.
+origins_mm, directions: (N, 3), lens frame. Each ray is the whole straight line through its origin.
+wavelength_nm: None: the design wavelength.
+start: "film": the light travels towards the scene; "scene": towards the film.
+dtype: precision of the computation, float64 or float32; results are float64 arrays.
+surface_count: number of surfaces to trace, in the order in which the light reaches them; None: all.
+device: for arrays in host memory: "cpu" or None, a GPU ("cuda", "cuda:1"), or "auto" for a GPU if there is one;
+  results are numpy arrays. Arrays in a GPU's memory with __cuda_array_interface__ or __dlpack__ (torch, cupy,
+  DeviceArray; float64 or float32, contiguous) are traced on that GPU, and the results are DeviceArrays.
+transmission: also computes the transmitted power by polarisation ray tracing in float64, see Lens.transmission; only
+  for arrays in host memory.
+Returns a TraceResult. An invalid ray gets the status BAD_INPUT. Raises InputError for wrong shapes, and
+DeviceError.)");
 }
 
 }  // namespace realcam::bindings

@@ -11,9 +11,11 @@ using namespace py::literals;
 
 namespace {
 
-/// Throws InputError for unknown keys.
-void allow(const py::dict& given, const std::string& what, const std::vector<std::string>& keys) {
-    for (const auto& [key, value] : given) {
+// `what` in the functions below names the dict in messages, such as "zernike".
+
+/// Throws InputError if the dict has a key that is not in `keys`.
+void allow_keys(const py::dict& dict, const std::string& what, const std::vector<std::string>& keys) {
+    for (const auto& [key, value] : dict) {
         const auto name = py::str(key).cast<std::string>();
         bool known = false;
         std::string list;
@@ -25,19 +27,21 @@ void allow(const py::dict& given, const std::string& what, const std::vector<std
     }
 }
 
+/// Returns the value of a key. Throws InputError if the key is missing or its value has the wrong type.
 template <class T>
-T value_of(const py::dict& given, const char* key, const std::string& what) {
-    if (!given.contains(key)) throw InputError(what + " wants \"" + key + '"');
+T value_of(const py::dict& dict, const char* key, const std::string& what) {
+    if (!dict.contains(key)) throw InputError(what + " must have the key \"" + key + '"');
     try {
-        return given[key].cast<T>();
+        return dict[key].cast<T>();
     } catch (const py::cast_error&) {
         throw InputError(what + ": \"" + key + "\" has the wrong type");
     }
 }
 
+/// Returns the value of a key, or `missing` if the dict does not have the key.
 template <class T>
-T value_or(const py::dict& given, const char* key, const std::string& what, T otherwise) {
-    return given.contains(key) ? value_of<T>(given, key, what) : otherwise;
+T value_or(const py::dict& dict, const char* key, const std::string& what, T missing) {
+    return dict.contains(key) ? value_of<T>(dict, key, what) : missing;
 }
 
 using Pair = std::pair<double, double>;
@@ -50,134 +54,139 @@ Pair pair_of(Vec2d v) {
     return {v.x, v.y};
 }
 
+/// Converts a dict such as {"order": "noll", "radius_mm": 10, "coefficients_mm": [...]}.
 template <class Terms>
-Terms terms_from(const py::dict& given) {
+Terms terms_from(const py::dict& dict) {
     constexpr FormWords words = Terms::words;
     const std::string what = words.key;
     Terms terms;
     if constexpr (requires { Terms::variant; }) {
         const auto [first, second] = words.variants;
-        allow(given, what, {words.variant_key, "radius_mm", words.coefficients_key});
-        const auto name = value_of<std::string>(given, words.variant_key, what);
+        allow_keys(dict, what, {words.variant_key, "radius_mm", words.coefficients_key});
+        const auto name = value_of<std::string>(dict, words.variant_key, what);
         if (name != first && name != second)
             throw InputError(what + ": \"" + words.variant_key + "\" must be \"" + first + "\" or \"" + second + '"');
         terms.*Terms::variant = static_cast<std::remove_reference_t<decltype(terms.*Terms::variant)>>(name == second);
     } else {
-        allow(given, what, {"radius_mm", words.coefficients_key});
+        allow_keys(dict, what, {"radius_mm", words.coefficients_key});
     }
-    terms.radius = value_of<double>(given, "radius_mm", what);
-    terms.coefficients = value_of<std::vector<double>>(given, words.coefficients_key, what);
+    terms.radius = value_of<double>(dict, "radius_mm", what);
+    terms.coefficients = value_of<std::vector<double>>(dict, words.coefficients_key, what);
     return terms;
 }
 
 template <class Terms>
-void change_terms(std::optional<Terms>& terms, const std::optional<FormDict>& to) {
-    if (!to) return;
-    if (to->empty())
+void change_terms(std::optional<Terms>& terms, const std::optional<FormDict>& change) {
+    if (!change) return;
+    if (change->empty())
         terms.reset();
     else
-        terms = terms_from<Terms>(*to);
+        terms = terms_from<Terms>(*change);
 }
 
-/// Returns the one of these keys that is present.
-std::string one_of(const py::dict& given, const std::string& what, const std::vector<const char*>& keys) {
+/// Returns which of these keys the dict has. Throws InputError unless it has exactly one of them.
+std::string only_key(const py::dict& dict, const std::string& what, const std::vector<const char*>& keys) {
     std::string found, list;
     int count = 0;
     for (const char* key : keys) {
         list += (list.empty() ? "" : ", ") + std::string(key);
-        if (!given.contains(key)) continue;
+        if (!dict.contains(key)) continue;
         found = key;
         ++count;
     }
-    if (count != 1) throw InputError(what + " wants one of the keys " + list);
+    if (count != 1) throw InputError(what + " must have exactly one of the keys " + list);
     return found;
 }
 
-void change_aperture(ApertureShape& shape, const py::dict& given) {
+/// Replaces the outline of an aperture, but not its obscurations. An empty dict restores the circular aperture.
+void change_aperture(ApertureShape& shape, const py::dict& dict) {
     const std::string what = "aperture";
     ApertureShape next;
     next.obscurations = shape.obscurations;
-    if (!given.empty()) {
-        const std::string kind = one_of(given, what, {"circle_mm", "ellipse_mm", "rectangle_mm", "polygon_mm"});
-        allow(given, what, {kind, "offset_mm"});
-        next.offset = vector_of(value_or<Pair>(given, "offset_mm", what, {0, 0}));
-        if (kind == "polygon_mm") {
+    if (!dict.empty()) {
+        const std::string outline = only_key(dict, what, {"circle_mm", "ellipse_mm", "rectangle_mm", "polygon_mm"});
+        allow_keys(dict, what, {outline, "offset_mm"});
+        next.offset = vector_of(value_or<Pair>(dict, "offset_mm", what, {0, 0}));
+        if (outline == "polygon_mm") {
             next.kind = ApertureOutline::polygon;
-            for (const Pair& corner : value_of<std::vector<Pair>>(given, "polygon_mm", what))
+            for (const Pair& corner : value_of<std::vector<Pair>>(dict, "polygon_mm", what))
                 next.corners.push_back(vector_of(corner));
-        } else if (kind == "circle_mm") {
-            next.half.x = next.half.y = value_of<double>(given, "circle_mm", what);
+        } else if (outline == "circle_mm") {
+            next.half.x = next.half.y = value_of<double>(dict, "circle_mm", what);
         } else {
-            next.kind = kind == "ellipse_mm" ? ApertureOutline::ellipse : ApertureOutline::rectangle;
-            next.half = vector_of(value_of<Pair>(given, kind.c_str(), what));
+            next.kind = outline == "ellipse_mm" ? ApertureOutline::ellipse : ApertureOutline::rectangle;
+            next.half = vector_of(value_of<Pair>(dict, outline.c_str(), what));
         }
     }
     shape = next;
 }
 
-void add_obscuration(const py::dict& given, double rim, std::vector<Obscuration>& to) {
+/// Appends the obscuration that a dict describes, or the arms of a spider. `clear_semi_diameter`: of the surface, in
+/// mm, the default length of the arms.
+void add_obscuration(const py::dict& dict, double clear_semi_diameter, std::vector<Obscuration>& obscurations) {
     const std::string what = "an obscuration";
-    const std::string kind = one_of(given, what, {"circle_mm", "ellipse_mm", "rectangle_mm", "spider_arms"});
-    if (kind == "spider_arms") {
-        allow(given, what, {"spider_arms", "width_mm", "length_mm", "angle_deg"});
-        const int count = value_of<int>(given, "spider_arms", what);
+    const std::string outline = only_key(dict, what, {"circle_mm", "ellipse_mm", "rectangle_mm", "spider_arms"});
+    if (outline == "spider_arms") {
+        allow_keys(dict, what, {"spider_arms", "width_mm", "length_mm", "angle_deg"});
+        const int count = value_of<int>(dict, "spider_arms", what);
         if (count < 1 || count > kMaxObscurations)
-            throw InputError("a spider has 1 to " + std::to_string(kMaxObscurations) + " arms");
-        const auto arms = spider_arms(count, value_of<double>(given, "width_mm", what),
-                                      value_or(given, "length_mm", what, rim), value_or(given, "angle_deg", what, 0.0));
-        to.insert(to.end(), arms.begin(), arms.end());
+            throw InputError("spider_arms must lie between 1 and " + std::to_string(kMaxObscurations));
+        const auto arms =
+            spider_arms(count, value_of<double>(dict, "width_mm", what),
+                        value_or(dict, "length_mm", what, clear_semi_diameter), value_or(dict, "angle_deg", what, 0.0));
+        obscurations.insert(obscurations.end(), arms.begin(), arms.end());
         return;
     }
-    allow(given, what, {kind, "offset_mm", "angle_deg"});
-    Obscuration piece;
-    piece.is_rectangle = kind == "rectangle_mm";
-    if (kind == "circle_mm")
-        piece.half.x = piece.half.y = value_of<double>(given, "circle_mm", what);
+    allow_keys(dict, what, {outline, "offset_mm", "angle_deg"});
+    Obscuration obscuration;
+    obscuration.is_rectangle = outline == "rectangle_mm";
+    if (outline == "circle_mm")
+        obscuration.half.x = obscuration.half.y = value_of<double>(dict, "circle_mm", what);
     else
-        piece.half = vector_of(value_of<Pair>(given, kind.c_str(), what));
-    piece.offset = vector_of(value_or<Pair>(given, "offset_mm", what, {0, 0}));
-    piece.angle_deg = value_or(given, "angle_deg", what, 0.0);
-    to.push_back(piece);
+        obscuration.half = vector_of(value_of<Pair>(dict, outline.c_str(), what));
+    obscuration.offset = vector_of(value_or<Pair>(dict, "offset_mm", what, {0, 0}));
+    obscuration.angle_deg = value_or(dict, "angle_deg", what, 0.0);
+    obscurations.push_back(obscuration);
 }
 
 }  // namespace
 
-void change_form(Surface& surface, const FormChanges& to) {
+void change_form(Surface& surface, const FormChanges& changes) {
     SurfaceForm& form = surface.form;
-    if (to.form) {
-        if (*to.form != "conic" && *to.form != "biconic" && *to.form != "toroid")
-            throw InputError("unknown form \"" + *to.form + "\"; expected conic, biconic or toroid");
-        form.base = *to.form == "toroid"    ? BaseForm::toroid
-                    : *to.form == "biconic" ? BaseForm::biconic
-                                            : BaseForm::conic;
+    if (changes.form) {
+        if (*changes.form != "conic" && *changes.form != "biconic" && *changes.form != "toroid")
+            throw InputError("unknown form \"" + *changes.form + "\"; expected conic, biconic or toroid");
+        form.base = *changes.form == "toroid"    ? BaseForm::toroid
+                    : *changes.form == "biconic" ? BaseForm::biconic
+                                                 : BaseForm::conic;
     }
-    if (to.radius_of_curvature_x_mm) {
-        if (*to.radius_of_curvature_x_mm == 0 || std::isnan(*to.radius_of_curvature_x_mm))
-            throw InputError("a radius of curvature of 0 is no surface; leave it out (or give inf) for none");
-        form.curvature_x = 1 / *to.radius_of_curvature_x_mm;
+    if (changes.radius_of_curvature_x_mm) {
+        if (*changes.radius_of_curvature_x_mm == 0 || std::isnan(*changes.radius_of_curvature_x_mm))
+            throw InputError("radius_of_curvature_x_mm must not be 0; inf means no curvature");
+        form.curvature_x = 1 / *changes.radius_of_curvature_x_mm;
     }
-    form.conic_x = to.conic_x.value_or(form.conic_x);
-    if (to.radial_terms) {
+    form.conic_x = changes.conic_x.value_or(form.conic_x);
+    if (changes.radial_terms) {
         form.radial.clear();
-        for (const auto& [power, value] : *to.radial_terms) {
+        for (const auto& [power, value] : *changes.radial_terms) {
             if (power < 1 || power > kMaxRadialTerms)
-                throw InputError("radial terms have powers from 1 to " + std::to_string(kMaxRadialTerms) +
-                                 " as keys; one is " + std::to_string(power));
+                throw InputError("the keys of radial_terms must be powers from 1 to " +
+                                 std::to_string(kMaxRadialTerms) + "; found " + std::to_string(power));
             form.radial.resize(static_cast<std::size_t>(power), 0.0);
             form.radial.back() = value;
         }
     }
-    if (to.xy_terms) {
+    if (changes.xy_terms) {
         form.xy.clear();
-        for (const auto& [powers, value] : *to.xy_terms) form.xy.push_back({powers.first, powers.second, value});
+        for (const auto& [powers, value] : *changes.xy_terms) form.xy.push_back({powers.first, powers.second, value});
     }
-    std::size_t row = 0;
-    over_rows(form, [&](auto& terms) { change_terms(terms, to.terms[row++]); });
-    if (to.aperture) change_aperture(surface.aperture_shape, *to.aperture);
-    if (to.obscurations) {
+    std::size_t kind = 0;
+    over_rows(form, [&](auto& terms) { change_terms(terms, changes.terms[kind++]); });
+    if (changes.aperture) change_aperture(surface.aperture_shape, *changes.aperture);
+    if (changes.obscurations) {
         surface.aperture_shape.obscurations.clear();
-        for (const py::dict& given : *to.obscurations)
-            add_obscuration(given, surface.clear_semi_diameter, surface.aperture_shape.obscurations);
+        for (const py::dict& dict : *changes.obscurations)
+            add_obscuration(dict, surface.clear_semi_diameter, surface.aperture_shape.obscurations);
     }
 }
 
@@ -203,11 +212,11 @@ std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface) {
     return terms;
 }
 
-FormDict terms_of(const Surface& surface, std::size_t row) {
+FormDict terms_of(const Surface& surface, std::size_t kind) {
     py::dict result;
     std::size_t i = 0;
     over_rows(surface.form, [&](const auto& terms) {
-        if (i++ != row || !terms) return;
+        if (i++ != kind || !terms) return;
         using Terms = TermsIn<decltype(terms)>;
         constexpr FormWords words = Terms::words;
         if constexpr (requires { Terms::variant; })
@@ -240,12 +249,12 @@ FormDict aperture_of(const Surface& surface) {
 
 std::vector<FormDict> obscurations_of(const Surface& surface) {
     std::vector<FormDict> list;
-    for (const Obscuration& piece : surface.aperture_shape.obscurations) {
-        py::dict plain;
-        plain[piece.is_rectangle ? "rectangle_mm" : "ellipse_mm"] = pair_of(piece.half);
-        plain["offset_mm"] = pair_of(piece.offset);
-        plain["angle_deg"] = piece.angle_deg;
-        list.push_back(plain);
+    for (const Obscuration& obscuration : surface.aperture_shape.obscurations) {
+        py::dict dict;
+        dict[obscuration.is_rectangle ? "rectangle_mm" : "ellipse_mm"] = pair_of(obscuration.half);
+        dict["offset_mm"] = pair_of(obscuration.offset);
+        dict["angle_deg"] = obscuration.angle_deg;
+        list.push_back(dict);
     }
     return list;
 }

@@ -1,3 +1,5 @@
+// Keyword arguments that describe changes of a surface, shared by Surface(), Surface.replace and Lens.with_surface.
+
 #pragma once
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -15,10 +17,11 @@
 
 namespace realcam::bindings {
 
-/// Terms of each row of kFormTerms as dicts; omitted ones are left unchanged.
+/// Terms of the sag as dicts, one for each kind of terms in kFormTerms (surface_form.hpp). std::nullopt: unchanged; an
+/// empty dict removes the terms.
 using TermsDicts = std::array<std::optional<FormDict>, kFormTermsCount>;
 
-/// Changes of a surface's form and aperture; omitted ones are left unchanged.
+/// Changes of a surface's form and aperture, as the arguments of Surface(); std::nullopt: unchanged.
 struct FormChanges {
     using Number = std::optional<double>;
     std::optional<std::string> form;
@@ -30,23 +33,28 @@ struct FormChanges {
     std::optional<std::vector<FormDict>> obscurations;
 };
 
-/// Applies changes to a surface. An empty dict removes the respective form or aperture. Throws InputError for an
+/// Applies changes to a surface. An empty dict removes the respective terms or aperture. Throws InputError for an
 /// invalid name, key or value.
-void change_form(Surface& surface, const FormChanges& to);
+void change_form(Surface& surface, const FormChanges& changes);
 
-/// Returns the values in the format that change_form accepts.
+// Values of a surface in the format of FormChanges.
+
+/// Returns "conic", "biconic" or "toroid".
 std::string form_name(const Surface& surface);
+/// Returns coefficients of r^N by the power N, without those that are 0.
 std::map<int, double> radial_terms_of(const Surface& surface);
+/// Returns coefficients of x^i y^j by the powers (i, j).
 std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface);
-/// `row`: of kFormTerms. Empty if the surface has no such terms.
-FormDict terms_of(const Surface& surface, std::size_t row);
+/// Returns the terms of the kind at an index of kFormTerms; empty if the surface has no such terms.
+FormDict terms_of(const Surface& surface, std::size_t kind);
+/// Returns the shape of the aperture; empty if it is the circle of the clear semi-diameter.
 FormDict aperture_of(const Surface& surface);
 std::vector<FormDict> obscurations_of(const Surface& surface);
 
-/// Medium of a changed surface; `...`: unchanged, because None is air.
+/// Medium of a changed surface. `...` means unchanged, because None is air.
 using MediumChange = Typed<"float | tuple[float, float] | str | Glass | types.EllipsisType | None">;
 
-/// Changes of a surface; omitted ones are left unchanged.
+/// Changes of a surface, as the arguments of Surface(); std::nullopt: unchanged.
 struct SurfaceChanges {
     using Number = std::optional<double>;
     using Numbers = std::optional<std::vector<double>>;
@@ -69,20 +77,22 @@ struct SurfaceChanges {
 };
 
 /// Returns the changed surface. Throws InputError for invalid values.
-Surface changed_surface(Surface surface, const SurfaceChanges& to);
+Surface changed_surface(Surface surface, const SurfaceChanges& changes);
 
+/// The type int, for parameter packs with one int for each type.
 template <class>
 using Index = int;
+/// Type of a dict of terms, for parameter packs with one dict for each index of kFormTerms.
 template <std::size_t>
 using TermsDict = SurfaceChanges::Dict;
 
-/// The rows of kFormTerms, for parameter packs with one parameter for each row.
-inline constexpr std::make_index_sequence<kFormTermsCount> kFormRows;
+/// The indices of kFormTerms.
+inline constexpr std::make_index_sequence<kFormTermsCount> kFormTermsIndices;
 
 namespace surface_changes_detail {
 
-template <class T, class Function, std::size_t... row, class... First>
-void def(std::index_sequence<row...>, py::class_<T>& type, const char* name, Function function, const char* text,
+template <class T, class Function, std::size_t... kind, class... First>
+void def(std::index_sequence<kind...>, py::class_<T>& type, const char* name, Function function, const char* text,
          First... first) {
     using C = SurfaceChanges;
     using namespace py::literals;
@@ -93,11 +103,11 @@ void def(std::index_sequence<row...>, py::class_<T>& type, const char* name, Fun
                    C::Number inner, const C::Name& surface_type, const Typed<"str | Coating | None">& coating,
                    const C::Numbers& decentre, const C::Numbers& tilt, std::optional<bool> returns, const C::Name& form,
                    C::Number radius_x, C::Number conic_x, const C::RadialTerms& radial, const C::XyTerms& xy,
-                   const TermsDict<row>&... terms, const C::Dict& aperture, const C::Dicts& obscurations) {
-            const bool stays = material.is(py::ellipsis());
+                   const TermsDict<kind>&... terms, const C::Dict& aperture, const C::Dicts& obscurations) {
+            const bool keeps_material = material.is(py::ellipsis());
             const SurfaceChanges changes{radius,
                                          thickness,
-                                         stays ? std::nullopt : std::optional(glass_from(material)),
+                                         keeps_material ? std::nullopt : std::optional(glass_from(material)),
                                          clear,
                                          conic,
                                          aspheric,
@@ -115,17 +125,17 @@ void def(std::index_sequence<row...>, py::class_<T>& type, const char* name, Fun
         "aspheric_coefficients"_a = py::none(), "inner_semi_diameter_mm"_a = py::none(), "type"_a = py::none(),
         "coating"_a = py::none(), "decentre_mm"_a = py::none(), "tilt_deg"_a = py::none(), "returns"_a = py::none(),
         "form"_a = py::none(), "radius_of_curvature_x_mm"_a = py::none(), "conic_x"_a = py::none(),
-        "radial_terms"_a = py::none(), "xy_terms"_a = py::none(), (py::arg(kFormWords[row].key) = py::none())...,
+        "radial_terms"_a = py::none(), "xy_terms"_a = py::none(), (py::arg(kFormWords[kind].key) = py::none())...,
         "aperture"_a = py::none(), "obscurations"_a = py::none(), text);
 }
 
 }  // namespace surface_changes_detail
 
-/// Defines a method with the arguments `first` and, by keyword, those of Surface. Omitted ones are left unchanged; the
-/// default of a material is `...`, because None is air.
+/// Defines a method with integer arguments named `first` and, by keyword, the arguments of Surface(). It calls
+/// function(self, first..., SurfaceChanges). Arguments that the caller omits are left unchanged. `text`: docstring.
 template <class T, class Function, class... First>
 void def_surface_changes(py::class_<T>& type, const char* name, Function function, const char* text, First... first) {
-    surface_changes_detail::def(kFormRows, type, name, function, text, first...);
+    surface_changes_detail::def(kFormTermsIndices, type, name, function, text, first...);
 }
 
 }  // namespace realcam::bindings

@@ -1,3 +1,5 @@
+// Accumulated samples of parts of a film as Python arrays, for realcam.FilmPart and realcam.Job.
+
 #include "../../render/film/film_sums.hpp"
 #include "../../render/session/adaptive_sampling.hpp"
 #include "film_parts.hpp"
@@ -27,17 +29,18 @@ std::vector<T> values_of(const Array& array) {
 
 SplatFilm splat_film_from(const py::dict& splats) {
     const auto sums = splats["sums"].cast<InputArray<std::int64_t>>();
-    if (sums.ndim() != 4 || sums.shape(3) != 3) throw InputError("sums of light must be (films, H, W, 3) numbers");
+    if (sums.ndim() != 4 || sums.shape(3) != 3)
+        throw InputError("sums of splats must be an array of shape (films, H, W, 3)");
     SplatFilm film;
     const int light = splats["light"].cast<int>();
-    if (light < 0 || light >= kMostSplats) throw InputError("the splats are of an unknown light");
+    if (light < 0 || light >= kMostSplats) throw InputError("the splats have an unknown kind of light");
     film.light = static_cast<GhostLight>(light);
     film.blocks = splats["blocks"].cast<std::vector<unsigned long long>>();
     film.units_per_lux = splats["units_per_lux"].cast<double>();
     film.height = static_cast<int>(sums.shape(1));
     film.width = static_cast<int>(sums.shape(2));
     if (film.blocks.size() != static_cast<std::size_t>(sums.shape(0)))
-        throw InputError("expected a number of blocks for each film");
+        throw InputError("blocks must have one number for each film of splats");
     film.sums.resize(static_cast<std::size_t>(sums.size()) / 3);
     for (std::size_t i = 0; i < film.sums.size(); ++i)
         for (std::size_t c = 0; c < 3; ++c) film.sums[i].units[c] = sums.data()[3 * i + c];
@@ -46,11 +49,11 @@ SplatFilm splat_film_from(const py::dict& splats) {
 
 std::vector<SplatFilm> splat_films_from(const py::list& splats) {
     std::vector<SplatFilm> films;
-    for (const py::handle& of_light : splats) films.push_back(splat_film_from(of_light.cast<py::dict>()));
+    for (const py::handle& film : splats) films.push_back(splat_film_from(film.cast<py::dict>()));
     return films;
 }
 
-/// Returns the exposure: 3 values per pixel, in lux seconds.
+/// Returns the exposure of an accumulated film in lux seconds, an array (H, W, 3).
 py::array_t<float> developed_exposure(const FilmArrays& arrays, const RenderSettings& settings,
                                       double exposure_time_s) {
     const AccumulatedFilm film = arrays.film();
@@ -63,6 +66,7 @@ py::array_t<float> developed_exposure(const FilmArrays& arrays, const RenderSett
     return array_from(std::move(image.exposure), {height, width, 3});
 }
 
+/// Adaptive sampling of a film whose samples are taken elsewhere, in rounds (see AdaptiveSampling).
 class Rounds {
 public:
     Rounds(const RenderSettings& settings, double iso, const InputArray<float>& exposure,
@@ -98,7 +102,7 @@ private:
 }  // namespace
 
 AccumulatedFilm FilmArrays::film() const {
-    if (pixels.ndim() != 2) throw InputError("sums of pixels must be an array of (H, W)");
+    if (pixels.ndim() != 2) throw InputError("sums of pixels must be an array of shape (H, W)");
     AccumulatedFilm film;
     film.pixels = values_of<PixelSum>(pixels);
     if (layers) film.layers = values_of<LayerSum>(*layers);
@@ -138,6 +142,7 @@ SplatList splats_to(std::vector<SplatFilm> films) {
 }
 
 void bind_film_parts(py::module_& m) {
+    // The dtypes' field names are those of files of film parts: a renamed member would change the file format.
     PYBIND11_NUMPY_DTYPE(PixelSum, irradiance, auxiliary, depth, met, samples, passed);
     PYBIND11_NUMPY_DTYPE(LayerSum, weight, met, normal, albedo, circle_mm);
     m.attr("_PIXEL_SUM") = py::dtype::of<PixelSum>();
@@ -155,7 +160,8 @@ void bind_film_parts(py::module_& m) {
            double exposure_time_s) {
             return developed_exposure({pixels, std::nullopt, splats}, settings, exposure_time_s);
         },
-        "pixels"_a, "splats"_a, "settings"_a, "exposure_time_s"_a);
+        "pixels"_a, "splats"_a, "settings"_a, "exposure_time_s"_a,
+        "Internal. Returns the exposure (H, W, 3) in lux seconds of accumulated pixel sums and splats.");
     m.def(
         "_traced_exposure",
         [](const SplatList& splats, double exposure_time_s) {
@@ -165,22 +171,30 @@ void bind_film_parts(py::module_& m) {
                               width = films.empty() ? 0 : films.front().width;
             return array_from(std::move(exposure), {height, width, 3});
         },
-        "splats"_a, "exposure_time_s"_a);
-    py::class_<Rounds>(m, "_Rounds")
+        "splats"_a, "exposure_time_s"_a,
+        "Internal. Returns the exposure (H, W, 3) in lux seconds of the splats alone: light traced from the lights.");
+    py::class_<Rounds>(m, "_Rounds", "Internal. Adaptive sampling of a picture whose samples are taken elsewhere.")
         .def(py::init<const RenderSettings&, double, const InputArray<float>&, const InputArray<std::int64_t>&,
                       const InputArray<float>&>(),
-             "settings"_a, "iso"_a, "exposure"_a, "samples"_a, "traced"_a)
+             "settings"_a, "iso"_a, "exposure"_a, "samples"_a, "traced"_a,
+             R"(settings: only their noise goal is used. exposure: (H, W, 3), of the samples so far, lux seconds;
+samples: (H, W), their number in each pixel. traced: part of the exposure traced from the lights; empty if there is
+none.)")
         .def_static(
             "first_samples",
             [](const RenderSettings& settings) {
                 return AdaptiveSampling::first_samples(settings.noise.value_or(NoiseGoal()));
             },
-            "settings"_a)
-        .def("next", &Rounds::next)
-        .def_property_readonly("traces_lights", &Rounds::traces_lights)
-        .def("add", &Rounds::add, "exposure"_a, "counts"_a, "traced"_a)
-        .def("left", &Rounds::left)
-        .def("shortfall", &Rounds::shortfall);
+            "settings"_a, "Returns the number of samples per pixel of the first round.")
+        .def("next", &Rounds::next,
+             "Returns how many more samples each pixel needs in the next round, (H, W); all 0 when finished.")
+        .def_property_readonly("traces_lights", &Rounds::traces_lights,
+                               "True if light is to be traced from the lights in the next round.")
+        .def("add", &Rounds::add, "exposure"_a, "counts"_a, "traced"_a,
+             "Adds the picture after a round. exposure, traced: of all samples; counts: samples of the round, (H, W).")
+        .def("left", &Rounds::left, "Returns the approximate number of samples, over all pixels, still required.")
+        .def("shortfall", &Rounds::shortfall,
+             "Returns a sentence if the noise goal has not been reached, otherwise an empty text.");
 }
 
 }  // namespace realcam::bindings

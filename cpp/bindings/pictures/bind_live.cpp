@@ -1,3 +1,5 @@
+// Live rendering: the class LiveFrame, and _LiveView for realcam.LiveView.
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -20,15 +22,17 @@ namespace {
 
 using FramePointer = std::shared_ptr<const LiveFrame>;
 
+/// Core part of realcam.LiveView.
 class PythonLiveView {
 public:
     PythonLiveView(const Assembly& scene, const std::string& device) : session_(device, &make_live_session) {
         session_.use([&](const auto& session) { view_.emplace(session, scene); });
     }
 
+    /// Starts to render a frame and returns meanwhile. Throws InputError.
     FramePointer shoot(const Camera& camera, const RenderSettings& settings, const std::string& tone) {
         const ToneCurve curve = tone_curve_from(tone);
-        if (settings.noise) throw InputError("spp of a frame must be a whole number");
+        if (settings.noise) throw InputError("spp of a live frame must be a whole number, not \"auto\"");
         return session_.use([&](const auto&) {
             return view_->shoot(camera, settings, curve, heed_signals, std::make_shared<WorkInProgress>());
         });
@@ -40,6 +44,8 @@ public:
         return picture_from(std::move(image), settings.layers);
     }
 
+    /// Returns the exposure (H, W, 3) in lux seconds and the depth (H, W) in m of the samples so far: DeviceArrays if
+    /// the session runs on a GPU.
     Typed<"tuple[DeviceArray | NDArray[float32], DeviceArray | NDArray[float32]]", py::tuple> picture() {
         std::optional<DevicePicture> on_gpu;
         std::optional<Image> image;
@@ -84,27 +90,30 @@ py::array_t<std::uint8_t> codes_of(const FramePointer& frame) {
 
 void bind_live(py::module_& m) {
     py::class_<LiveFrame, std::shared_ptr<LiveFrame>>(m, "LiveFrame",
-                                                      "A picture of a LiveView, on its way from the device.")
+                                                      "A frame of a LiveView, which the device may still be rendering.")
         .def_property_readonly(
             "codes", [](const std::shared_ptr<LiveFrame>& frame) { return codes_of(frame); },
-            R"((H, W, 3) uint8, sRGB, read-only; waits for the picture. Raises DeviceError; Cancelled after cancel();
-KeyboardInterrupt on Ctrl-C.)")
+            R"((H, W, 3) uint8, read-only: the 8-bit sRGB values of the frame. Waits until it is complete. Raises
+DeviceError; Cancelled if cancel() was called; KeyboardInterrupt on Ctrl-C.)")
         .def_property_readonly(
             "ready", [](const LiveFrame& frame) { return frame.wait_for(std::chrono::microseconds(0)); },
-            "Whether codes would return at once.")
-        .def_property_readonly("samples", &LiveFrame::samples, "Per pixel, collected up to this frame.");
-    py::class_<PythonLiveView>(m, "_LiveView")
+            "True if the frame is complete, so that codes returns without waiting.")
+        .def_property_readonly("samples", &LiveFrame::samples,
+                               "Number of samples per pixel that were accumulated up to this frame.");
+    py::class_<PythonLiveView>(m, "_LiveView", "Internal: use realcam.LiveView.")
         .def(py::init<const Assembly&, const std::string&>(), "scene"_a, "device"_a)
         .def(
             "shoot",
             [](PythonLiveView& live, const Camera& camera, const RenderSettings& settings, const std::string& tone) {
                 return std::const_pointer_cast<LiveFrame>(live.shoot(camera, settings, tone));
             },
-            "camera"_a, "settings"_a, "tone"_a)
-        .def("show", &PythonLiveView::show, "scene"_a)
-        .def("picture", &PythonLiveView::picture)
-        .def("image", &PythonLiveView::image, "camera"_a, "settings"_a)
-        .def("cancel", &PythonLiveView::cancel);
+            "camera"_a, "settings"_a, "tone"_a, "Starts to render a frame and returns it meanwhile.")
+        .def("show", &PythonLiveView::show, "scene"_a, "Sets the scene of the frames that follow.")
+        .def("picture", &PythonLiveView::picture,
+             "Returns exposure (H, W, 3) in lux seconds and depth (H, W) in m of the accumulated samples.")
+        .def("image", &PythonLiveView::image, "camera"_a, "settings"_a,
+             "Returns the fields of an Image of the last frame's camera and settings, with layers.")
+        .def("cancel", &PythonLiveView::cancel, "Cancels frames in progress, which then raise Cancelled.");
 }
 
 }  // namespace realcam::bindings

@@ -1,4 +1,4 @@
-// Bindings for reading and writing picture files.
+// Internal functions that read and write image files. Their paths are bytes objects, from os.fsencode.
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -17,7 +17,8 @@ using namespace py::literals;
 
 namespace {
 
-/// Returns the pixels and the reader's warnings.
+/// Returns the pixels (H, W, 3) of an environment map, linear, and the reader's warnings. `layer`: of an OpenEXR file;
+/// "" for the main image.
 Typed<"tuple[NDArray[float32], list[str]]", py::tuple> read_environment(const py::bytes& path,
                                                                         const std::string& layer) {
     const std::string file = path;
@@ -35,52 +36,54 @@ Typed<"tuple[NDArray[float32], list[str]]", py::tuple> read_environment(const py
 
 using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
-/// Returns views of the named layers, which are arrays of the picture's size. `kept` receives arrays that had to be
-/// converted and must outlive the views.
+/// Returns views of the layers in a dict of arrays by name. `depth`: the depth layer, whose shape is that of the
+/// picture. `arrays` receives the arrays to which the views refer; it must outlive them. Throws InputError for other
+/// shapes.
 std::vector<image_io::PictureView::Layer> layers_from(const py::dict& layers, const FloatArray& depth,
-                                                      std::vector<py::array>& kept) {
+                                                      std::vector<py::array>& arrays) {
     std::vector<image_io::PictureView::Layer> views;
     for (std::size_t i = 0; i < kLayers.size(); ++i) {
         const LayerInfo& info = kLayers[i];
         if (!layers.contains(info.name) || static_cast<Layer>(i) == Layer::depth) continue;
-        const py::object given = layers[info.name];
+        const py::object values = layers[info.name];
         py::array array;
         if (info.is_number)
-            array = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>(given);
+            array = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>(values);
         else
-            array = FloatArray(given);
+            array = FloatArray(values);
         if (array.ndim() != (info.channels == 1 ? 2 : 3) || array.shape(0) != depth.shape(0) ||
             array.shape(1) != depth.shape(1) || (array.ndim() == 3 && array.shape(2) != info.channels))
             throw InputError("the layer \"" + std::string(info.name) + "\" must have the shape (H, W" +
                              (info.channels == 1 ? ")" : ", " + std::to_string(info.channels) + ")") +
                              " of the picture");
         views.push_back({static_cast<Layer>(i), array.data()});
-        kept.push_back(std::move(array));
+        arrays.push_back(std::move(array));
     }
     return views;
 }
 
+/// Returns an attribute of a realcam.Image. Throws InputError if it has another type.
 template <class T>
 T member(const py::object& image, const char* name) {
     try {
         return image.attr(name).cast<T>();
     } catch (const py::cast_error&) {
-        throw InputError("the image's " + std::string(name) + " must be such as rc.render gives");
+        throw InputError("the image's " + std::string(name) + " must have the type that rc.render returns");
     }
 }
 
-/// Writes a realcam.Image, `image`, to a file.
+/// Writes a realcam.Image to a file. `film_tone`: true for the tone curve "film", false for "linear".
 void write_picture(const py::bytes& path, const py::object& image, bool film_tone) {
     const auto exposure = member<FloatArray>(image, "pixels"), depth = member<FloatArray>(image, "depth");
     if (exposure.ndim() != 3 || exposure.shape(2) != 3 || depth.ndim() != 2 || depth.shape(0) != exposure.shape(0) ||
         depth.shape(1) != exposure.shape(1))
         throw InputError("the picture's pixels must have the shape (H, W, 3), and its depth (H, W)");
-    std::vector<py::array> kept;
+    std::vector<py::array> layer_arrays;
     const image_io::PictureView picture{static_cast<int>(depth.shape(1)),
                                         static_cast<int>(depth.shape(0)),
                                         exposure.data(),
                                         depth.data(),
-                                        layers_from(py::dict(image.attr("layers")), depth, kept),
+                                        layers_from(py::dict(image.attr("layers")), depth, layer_arrays),
                                         member<IdNames>(image, "object_names"),
                                         member<IdNames>(image, "material_names")};
     io::ImageMetadata metadata =
@@ -94,8 +97,10 @@ void write_picture(const py::bytes& path, const py::object& image, bool film_ton
     image_io::write_image(picture, file, metadata, film_tone ? ToneCurve::film : ToneCurve::linear, heed_signals);
 }
 
+/// Metadata of an image file: pairs (name, value).
 using Entries = std::vector<std::pair<std::string, std::string>>;
 
+/// Returns the exposure (H, W, 3) in lux seconds and the metadata of an image file that realcam has written.
 Typed<"tuple[NDArray[float32], list[tuple[str, str]]]", py::tuple> read_film(const py::bytes& path) {
     const std::string file = path;
     image_io::FilmFile film;
@@ -108,9 +113,10 @@ Typed<"tuple[NDArray[float32], list[tuple[str, str]]]", py::tuple> read_film(con
     return py::make_tuple(exposure, film.entries);
 }
 
+/// Writes 8-bit sRGB values (H, W, 3) to a file.
 void write_codes(const py::bytes& path, const py::array_t<std::uint8_t, py::array::c_style>& codes,
                  const Entries& entries) {
-    if (codes.ndim() != 3 || codes.shape(2) != 3) throw InputError("expected codes of shape (H, W, 3)");
+    if (codes.ndim() != 3 || codes.shape(2) != 3) throw InputError("expected 8-bit values of shape (H, W, 3)");
     const std::string file = path;
     const Unlocked unlocked;
     image_io::write_codes(file, static_cast<int>(codes.shape(1)), static_cast<int>(codes.shape(0)), codes.data(),
@@ -119,12 +125,15 @@ void write_codes(const py::bytes& path, const py::array_t<std::uint8_t, py::arra
 
 }  // namespace
 
-// Paths are bytes objects, from os.fsencode.
 void bind_pictures(py::module_& m) {
-    m.def("_read_environment", &read_environment, "path"_a, "layer"_a);
-    m.def("_write_picture", &write_picture, "path"_a, "image"_a, "film_tone"_a);
-    m.def("_write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a);
-    m.def("_read_film", &read_film, "path"_a);
+    m.def("_read_environment", &read_environment, "path"_a, "layer"_a,
+          "Internal: use realcam.read_environment. Returns the pixels (H, W, 3) and a list of warnings.");
+    m.def("_write_picture", &write_picture, "path"_a, "image"_a, "film_tone"_a,
+          "Internal: use Image.save. film_tone: True for the tone curve \"film\", False for \"linear\".");
+    m.def("_write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a,
+          "Internal. Writes 8-bit sRGB values (H, W, 3) with metadata, pairs (name, value), to an image file.");
+    m.def("_read_film", &read_film, "path"_a,
+          "Internal. Returns the exposure (H, W, 3) in lux seconds and the metadata, pairs (name, value), of a file.");
 }
 
 }  // namespace realcam::bindings

@@ -1,3 +1,5 @@
+// The planner: the classes Plan and PlanDecision.
+
 #include <pybind11/stl.h>
 
 #include <cmath>
@@ -16,7 +18,7 @@ using namespace py::literals;
 
 namespace {
 
-/// Decision of a plan as Python exposes it.
+/// Decision of a plan as Python exposes it; see the docstrings.
 struct Decision {
     std::string effect, unit, by, reason;
     double size, threshold;
@@ -24,6 +26,7 @@ struct Decision {
     bool is_kept;
 };
 
+/// Plan as Python exposes it; see the docstrings.
 struct Planned {
     std::string model;
     std::vector<std::string> effects;
@@ -41,6 +44,7 @@ Planned planned_of(const Plan& plan) {
     return planned;
 }
 
+/// `times`: also measures the render time of each effect.
 Planned plan(const Assembly& scene, const Camera& camera, const RenderSettings& settings, const std::string& device,
              bool times) {
     return OwnedSession::shared(device).use([&](const auto& session) {
@@ -49,21 +53,21 @@ Planned plan(const Assembly& scene, const Camera& camera, const RenderSettings& 
     });
 }
 
-/// Returns the camera model, the settings, the summary and a warning for a film sequence, from the camera of its first
-/// frame and those of other frames.
-std::tuple<std::string, RenderSettings, std::string, std::string> resolved_film(const Assembly& scene,
-                                                                                const Camera& camera,
-                                                                                const std::vector<Camera>& others,
-                                                                                const RenderSettings& settings,
-                                                                                const std::string& device) {
+/// Plans a video. Returns the camera model, the settings, a summary of the plan and a warning (or empty texts).
+/// `camera`: that of the first frame; `others`: cameras of other frames.
+std::tuple<std::string, RenderSettings, std::string, std::string> resolved_video(const Assembly& scene,
+                                                                                 const Camera& camera,
+                                                                                 const std::vector<Camera>& others,
+                                                                                 const RenderSettings& settings,
+                                                                                 const std::string& device) {
     if (!settings.needs_plan()) return {io::name_of(camera.model), settings, "", ""};  // avoids creating a session
     std::vector<Camera> cameras = {camera};
     cameras.insert(cameras.end(), others.begin(), others.end());
-    ResolvedFilm film = OwnedSession::shared(device).use([&](const auto& session) {
+    ResolvedFilm video = OwnedSession::shared(device).use([&](const auto& session) {
         return resolve_film(*session, scene, cameras, settings, fast_pupil_tracer(),
                             [](double) { return heed_signals(); });
     });
-    return {io::name_of(film.model), std::move(film.settings), film.summary, film.warning};
+    return {io::name_of(video.model), std::move(video.settings), video.summary, video.warning};
 }
 
 }  // namespace
@@ -74,39 +78,50 @@ template <>
 struct RestoredCheck<Planned> : AnyMembers {};
 
 void bind_plan(py::module_& m) {
-    m.def("_number_text", [](double value, int digits) { return number_text(value, digits); }, "value"_a, "digits"_a);
-    py::class_<Decision> decision(m, "PlanDecision", "One thing that a picture may have or do without.");
+    m.def(
+        "_number_text", [](double value, int digits) { return number_text(value, digits); }, "value"_a, "digits"_a,
+        "Internal. Formats a number with this number of significant digits.");
+    py::class_<Decision> decision(m, "PlanDecision", "Decision of a Plan: whether an effect is simulated.");
     def_value(decision);
-    decision.def_readonly("effect", &Decision::effect)
-        .def_readonly("size", &Decision::size, "By how much the picture changes where it is left out.")
-        .def_readonly("unit", &Decision::unit, "Of size and threshold: \"px\", or \"codes\" of 8 bits.")
-        .def_readonly("threshold", &Decision::threshold)
-        .def_readonly("is_kept", &Decision::is_kept)
-        .def_readonly("by", &Decision::by, "\"planner\", or \"user\" where the effect was named.")
+    decision.def_readonly("effect", &Decision::effect, "Name of the effect, or of another choice such as the bounces.")
+        .def_readonly("size", &Decision::size, "Change of the picture if the effect is left out.")
+        .def_readonly("unit", &Decision::unit,
+                      "Unit of size and threshold: \"px\" (pixels), or \"codes\" (steps of an 8-bit picture).")
+        .def_readonly("threshold", &Decision::threshold, "Size from which the planner keeps the effect.")
+        .def_readonly("is_kept", &Decision::is_kept, "True if the effect is simulated.")
+        .def_readonly("by", &Decision::by, "Who decided: \"planner\", or \"user\" if the effect was named.")
         .def_readonly("time_share", &Decision::time_share,
-                      R"(What the effect by itself adds to the picture's time, as a share of that without effects,
-measured on the device; None: not measured.)")
-        .def_readonly("reason", &Decision::reason)
+                      R"(Additional render time of the effect alone, relative to the time without effects, measured on
+the device; None: not measured.)")
+        .def_readonly("reason", &Decision::reason, "Explanation of the decision.")
         .def("__repr__", [](const Decision& d) {
             return "<realcam.PlanDecision " + d.effect + ' ' + (d.is_kept ? "kept" : "left out") + ": " +
                    digits(d.size) + ' ' + d.unit + " of " + digits(d.threshold) + '>';
         });
-    py::class_<Planned> planned(m, "Plan", "What a shot calls for. str() makes a table of it.");
+    py::class_<Planned> planned(
+        m, "Plan",
+        "Camera model, effects and bounces that a shot requires (rc.plan). str() returns a table "
+        "of the decisions.");
     def_value(planned);
     planned
-        .def_readonly("model", &Planned::model, "The cheapest camera model that looks like every surface of the lens.")
-        .def_readonly("effects", &Planned::effects, "Names, as render takes them.")
-        .def_readonly("max_bounces", &Planned::max_bounces)
-        .def_readonly("decisions", &Planned::decisions)
-        .def_readonly("summary", &Planned::summary, "What was decided, in a line, as it is in a picture's metadata.")
+        .def_readonly("model", &Planned::model,
+                      "The cheapest camera model whose picture does not differ visibly from the model \"full\".")
+        .def_readonly("effects", &Planned::effects, "Names of the effects, for RenderSettings(effects=...).")
+        .def_readonly("max_bounces", &Planned::max_bounces, "Maximum number of bounces of a path.")
+        .def_readonly("decisions", &Planned::decisions, "List of PlanDecisions.")
+        .def_readonly("summary", &Planned::summary, "The decisions in one line, as in a picture's metadata.")
         .def("__str__", [](const Planned& p) { return p.text; })
         .def("__repr__", [](const Planned& p) {
             std::string names;
             for (const std::string& name : p.effects) names += (names.empty() ? "" : ", ") + name;
             return "<realcam.Plan: model " + p.model + ", effects " + (names.empty() ? "none" : names) + '>';
         });
-    m.def("_plan", &plan, "scene"_a, "camera"_a, "settings"_a, "device"_a, "times"_a);
-    m.def("_resolve_film", &resolved_film, "scene"_a, "camera"_a, "others"_a, "settings"_a, "device"_a);
+    m.def("_plan", &plan, "scene"_a, "camera"_a, "settings"_a, "device"_a, "times"_a,
+          "Internal: use realcam.plan. times: True measures the render time of each effect.");
+    m.def(
+        "_resolve_film", &resolved_video, "scene"_a, "camera"_a, "others"_a, "settings"_a, "device"_a,
+        R"(Internal. Plans a video from the camera of its first frame and those of other frames. Returns (camera model,
+settings, summary, warning); the texts are empty without a plan.)");
 }
 
 }  // namespace realcam::bindings

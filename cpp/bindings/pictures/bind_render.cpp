@@ -1,3 +1,5 @@
+// Rendering of one picture, its statistics, the lists of effects and devices, and conversions that all bindings use.
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -24,7 +26,7 @@ using namespace py::literals;
 
 void warn(const std::string& text) {
     const py::gil_scoped_acquire acquire;
-    // Level 1 is the function of realcam.arguments that calls each function of this module.
+    // Stack level 2 is the user's call: level 1 is the wrapper in realcam.arguments around each function of the module.
     if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 2) < 0) throw py::error_already_set();
 }
 
@@ -48,24 +50,25 @@ bool heed_signals() {
 
 Progress progress_of(const py::object& callback) {
     if (!callback.is_none() && !PyCallable_Check(callback.ptr()))
-        throw InputError("progress must be a function of the share done, 0 to 1");
-    return [&callback](double done) {
+        throw InputError("progress must be a function of the finished fraction, 0 to 1");
+    return [&callback](double fraction) {
         heed_signals();
         const py::gil_scoped_acquire acquire;
         if (callback.is_none()) return true;
-        const py::object answer = callback(done);
+        const py::object answer = callback(fraction);
         if (answer.is_none()) return true;
-        const int goes_on = py::isinstance<py::str>(answer) ? -1 : PyObject_IsTrue(answer.ptr());
-        if (goes_on >= 0) return goes_on != 0;
+        const int continues = py::isinstance<py::str>(answer) ? -1 : PyObject_IsTrue(answer.ptr());
+        if (continues >= 0) return continues != 0;
         PyErr_Clear();
-        throw InputError("progress must return False to stop, and else True or None; it returned " +
+        throw InputError("progress must return False to stop, otherwise True or None; it returned " +
                          py::module_::import("reprlib").attr("repr")(answer).cast<std::string>());
     };
 }
 
 namespace {
 
-/// `keeps_stopped`: if the progress function stops rendering, returns the picture of the samples taken so far.
+/// Renders a picture. `keeps_stopped`: if the progress function stops rendering, returns the picture of the samples
+/// taken so far; otherwise throws Cancelled then.
 PictureFields render(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                      const std::string& device, const ProgressFunction& progress, bool keeps_stopped) {
     const Progress report = progress_of(progress);
@@ -75,6 +78,7 @@ PictureFields render(const Assembly& scene, const Camera& camera, const RenderSe
     return picture_from(std::move(image), settings.layers);
 }
 
+/// Converts exposure in lux seconds (any shape) to 8-bit sRGB values of the same shape.
 py::array_t<std::uint8_t> develop(const InputArray<float>& exposure, double iso, const std::string& tone) {
     const ToneCurve curve = tone_curve_from(tone);
     if (!(iso > 0) || !std::isfinite(iso)) throw InputError("the ISO number must be positive");
@@ -105,26 +109,33 @@ template <>
 struct RestoredCheck<Device> : AnyMembers {};
 
 void bind_render(py::module_& m) {
-    py::class_<RenderStats> stats(m, "RenderStats", "What a picture cost. Stage seconds are summed over the threads.");
+    py::class_<RenderStats> stats(m, "RenderStats", "Render time and number of rays of a picture.");
     def_hashable_value(stats);
-    stats.def_readonly("seconds", &RenderStats::seconds, "Wall clock, all of it.")
-        .def_readonly("setup_seconds", &RenderStats::setup_seconds, "Pupil and scene; part of seconds.")
-        .def_readonly("lens_seconds", &RenderStats::lens_seconds)
-        .def_readonly("scene_seconds", &RenderStats::scene_seconds)
-        .def_readonly("other_seconds", &RenderStats::other_seconds)
-        .def_readonly("sampled_rays", &RenderStats::sampled_rays, "Sent into the lens.")
-        .def_readonly("passed_rays", &RenderStats::passed_rays, "That left it.")
-        .def_readonly("scene_rays", &RenderStats::scene_rays, "Camera, shadow and bounce rays.")
-        .def_readonly("device", &RenderStats::device)
+    stats.def_readonly("seconds", &RenderStats::seconds, "Total time (wall clock).")
+        .def_readonly("setup_seconds", &RenderStats::setup_seconds,
+                      "Part of seconds spent on the pupil and the scene's acceleration structures.")
+        .def_readonly("lens_seconds", &RenderStats::lens_seconds, "Time in the lens trace, summed over all threads.")
+        .def_readonly("scene_seconds", &RenderStats::scene_seconds,
+                      "Time in ray-scene intersection and shading, summed over all threads.")
+        .def_readonly("other_seconds", &RenderStats::other_seconds, "Other time, summed over all threads.")
+        .def_readonly("sampled_rays", &RenderStats::sampled_rays, "Number of rays sent into the lens from the film.")
+        .def_readonly("passed_rays", &RenderStats::passed_rays, "Number of them that passed the lens.")
+        .def_readonly("scene_rays", &RenderStats::scene_rays,
+                      "Number of rays in the scene: camera, shadow and bounce rays.")
+        .def_readonly("device", &RenderStats::device, "Name of the device.")
         .def("__repr__", [](const RenderStats& s) {
             return "<realcam.RenderStats " + digits(s.seconds) + " s on " + s.device + '>';
         });
-    m.def("_render", &render, "scene"_a, "camera"_a, "settings"_a, "device"_a, "progress"_a, "keeps_stopped"_a);
+    m.def("_render", &render, "scene"_a, "camera"_a, "settings"_a, "device"_a, "progress"_a, "keeps_stopped"_a,
+          R"(Internal: use realcam.render. Returns the fields of an Image. keeps_stopped: if progress stops rendering,
+return the picture of the samples taken so far instead of raising Cancelled.)");
     m.def(
         "_effect_notices",
         [](const LensSystem& lens, const RenderSettings& settings) { return effect_notices(settings.effects, lens); },
-        "lens"_a, "settings"_a);
-    py::class_<EffectInfo> effect_type(m, "EffectInfo", "Optional effect of a picture. str() is a line of it.");
+        "lens"_a, "settings"_a,
+        "Internal. Returns sentences about named effects that the lens cannot show, or only approximately.");
+    py::class_<EffectInfo> effect_type(
+        m, "EffectInfo", "Optional effect of a picture. str() returns its name and description in a line.");
     def_copy(effect_type);
     // Each effect is one Python object that refers to the static table.
     py::tuple effect_rows(std::size(kEffects));
@@ -134,38 +145,44 @@ void bind_render(py::module_& m) {
         effect_type, [](const py::object& self) { return self.attr("name"); },
         [effect_rows](const std::string& name) -> py::object {
             const EffectInfo* effect = find_effect(name);
-            if (!effect) throw InputError("it is an effect that this version does not have");
+            if (!effect) throw InputError("the effect does not exist in this version");
             return effect_rows[static_cast<std::size_t>(effect - kEffects)];
         });
-    effect_type.def_readonly("name", &EffectInfo::name, "For effects=(...).")
-        .def_readonly("what", &EffectInfo::what, "It is.")
-        .def_readonly("needs", &EffectInfo::needs, "Of lens, scene and camera.")
-        .def_readonly("usage", &EffectInfo::usage, "What else to know, or \"\".")
-        .def_property_readonly("is_on", &EffectInfo::is_on, "Unless it is left out, as \"-name\".")
+    effect_type.def_readonly("name", &EffectInfo::name, "Name, for RenderSettings(effects=...).")
+        .def_readonly("what", &EffectInfo::what, "Description.")
+        .def_readonly("needs", &EffectInfo::needs, "Requirements on lens, scene and camera.")
+        .def_readonly("usage", &EffectInfo::usage, "Further notes; may be empty.")
+        .def_property_readonly("is_on", &EffectInfo::is_on,
+                               "True if the effect is simulated unless it is switched off by \"-name\".")
         .def_property_readonly(
             "parameter",
             [](const EffectInfo& effect) {
                 return effect.parameter ? std::optional(EffectChoice().*effect.parameter) : std::nullopt;
             },
-            "What name alone means of \"name=number\"; None: it has none.")
+            "Default of the number in \"name=number\"; None: the effect has no parameter.")
         .def_readonly("has_wavelengths", &EffectInfo::has_wavelengths,
-                      "Samples have one each, so that an illuminant can be named.")
-        .def_readonly("needs_full_lens", &EffectInfo::needs_full_lens, "The camera model \"full\".")
-        .def_readonly("needs_coatings", &EffectInfo::needs_coatings, "In the lens file; else they are guessed.")
+                      "True if each sample has a wavelength, so that RenderSettings(illuminant=...) applies.")
+        .def_readonly("needs_full_lens", &EffectInfo::needs_full_lens,
+                      "True if the effect requires the camera model \"full\".")
+        .def_readonly("needs_coatings", &EffectInfo::needs_coatings,
+                      "True if the effect uses the coatings in the lens file; without them the result is a guess.")
         .def_readonly("shows_in_previews", &EffectInfo::shows_in_previews,
-                      "In pictures of fewer pixels than were asked for.")
+                      "True if the effect is simulated in previews, which have fewer pixels than the picture.")
         .def_readonly("cpu_time", &EffectInfo::cpu_time,
-                      "Of a picture with it over one without (benchmarks/effects.py); 0: not measured.")
-        .def_readonly("gpu_time", &EffectInfo::gpu_time, "Likewise.")
-        .def_property_readonly("description", &line_of, "What it is and needs, in a line.")
+                      "Render time with the effect over that without it, on a CPU core (benchmarks/effects.py); 0: not "
+                      "measured.")
+        .def_readonly("gpu_time", &EffectInfo::gpu_time,
+                      "Render time with the effect over that without it, on a GPU; 0: not measured.")
+        .def_property_readonly("description", &line_of, "Description and requirements in a line.")
         .def("__str__", py::overload_cast<const EffectInfo&>(&line_text))
         .def("__repr__", [](const EffectInfo& e) { return std::string("<realcam.EffectInfo ") + e.name + '>'; });
     m.def(
         "effects", [effect_rows]()->Typed<"list[EffectInfo]", py::list> { return py::list(effect_rows); },
-        "All effects that can be named.");
+        "Returns the list of all optional effects, for RenderSettings(effects=...).");
     m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
-          R"(Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become
-middle grey, 118. tone: "film" (soft highlights) or "linear" (clipped).)");
+          R"(Converts film exposure to 8-bit sRGB values of the same shape.
+exposure: in lux seconds, any shape. iso: sensitivity; an exposure of 10 / iso lux seconds becomes middle grey, 118.
+tone: tone curve, "film" (soft highlights) or "linear" (clipped highlights). Raises InputError.)");
     m.def(
         "_metered_exposure",
         [](const py::array_t<float, py::array::c_style | py::array::forcecast>& exposure) {
@@ -173,15 +190,18 @@ middle grey, 118. tone: "film" (soft highlights) or "linear" (clipped).)");
             image.exposure = PictureFloats({exposure.data(), static_cast<std::size_t>(exposure.size())});
             return metered_exposure(image);
         },
-        "exposure"_a);
-    py::class_<Device> device_type(m, "Device", "What this machine can render with. str() is a line of it.");
+        "exposure"_a, "Internal. Returns the average exposure of a picture as a light meter sees it, in lux seconds.");
+    py::class_<Device> device_type(m, "Device",
+                                   "Device that this machine can render with. str() returns name and description.");
     def_hashable_value(device_type);
-    device_type.def_readonly("name", &Device::name, "For device=...: \"cpu\", \"cuda:0\", ...")
-        .def_readonly("description", &Device::description, "For people.")
+    device_type.def_readonly("name", &Device::name, "Name, for device=...: \"cpu\", \"cuda:0\", ...")
+        .def_readonly("description", &Device::description, "Model of the processor or GPU.")
         .def("__str__", py::overload_cast<const Device&>(&line_text))
         .def("__repr__", [](const Device& d) { return "<realcam.Device " + line_text(d) + '>'; });
-    m.def("devices", &devices, "All devices of this machine, the CPU first.");
-    m.def("_name_cuda_plugin", [](const py::bytes& path) { name_cuda_plugin(path); }, "path"_a);
+    m.def("devices", &devices, "Returns the list of all devices of this machine, the CPU first.");
+    m.def(
+        "_name_cuda_plugin", [](const py::bytes& path) { name_cuda_plugin(path); }, "path"_a,
+        "Internal. Sets the path of the CUDA plug-in, which is loaded when a GPU is first used.");
 }
 
 }  // namespace realcam::bindings

@@ -1,3 +1,5 @@
+// The internal class _Session, for realcam.Session.
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -33,28 +35,30 @@ public:
         });
     }
 
-    /// Returns take(session, progress) for the current scene, camera and settings, in one turn of the session.
-    template <class Take>
-    auto taken(Take&& take) {
+    /// Returns work(session, progress), called with the current scene, camera and settings set, while this thread holds
+    /// the session's lock and not the GIL.
+    template <class Work>
+    auto with_session(Work&& work) {
         return session_.use([&](const auto& session) {
             session->set(scene_, camera_, settings_, heed_signals);  // prepares the session again after an error
-            return take(*session, [](double) { return heed_signals(); });
+            return work(*session, [](double) { return heed_signals(); });
         });
     }
 
     void add(int spp) {
-        taken([&](Session& session, const Progress& progress) { session.add(spp, progress); });
+        with_session([&](Session& session, const Progress& progress) { session.add(spp, progress); });
     }
 
-    /// `wanted`: settings; only their noise goal is used.
-    Typed<"_Reached", py::dict> add_until(const RenderSettings& wanted) {
-        const NoiseGoal goal = wanted.noise.value_or(NoiseGoal());
+    /// Takes samples until a noise goal is reached, that of `settings`, whose other members are ignored.
+    Typed<"_Reached", py::dict> add_until(const RenderSettings& settings) {
+        const NoiseGoal goal = settings.noise.value_or(NoiseGoal());
         const ReachedNoise reached =
-            taken([&](Session& session, const Progress& progress) { return session.add_until(goal, progress); });
+            with_session([&](Session& session, const Progress& progress) { return session.add_until(goal, progress); });
         return py::dict("noise"_a = reached.noise, "is_reached"_a = reached.is_reached,
                         "spp_wanted"_a = reached.samples_wanted, "shortfall"_a = shortfall_of(reached, goal));
     }
 
+    /// Returns the picture of all samples so far.
     PictureFields picture() {
         LayerSet layers;
         Image image = session_.use([&](const auto& session) {
@@ -64,36 +68,41 @@ public:
         return picture_from(std::move(image), layers);
     }
 
+    /// Returns radiance sums of a region's pixels for `count` samples with indices from `first`, apart from this
+    /// picture. `counts`: smaller number of samples for each pixel, row by row; std::nullopt: all of them.
     RegionSumArrays expose_region(const RegionNumbers& numbers, std::int64_t first, int count,
                                   const std::optional<InputArray<std::uint32_t>>& counts) {
         const FilmRegion region = region_from(numbers);
-        std::vector<std::uint32_t> of_pixels;
-        if (counts) of_pixels.assign(counts->data(), counts->data() + counts->size());
-        return region_sums_to(taken([&](Session& session, const Progress& progress) {
-                                  return session.expose_region(region, first, count, of_pixels, progress);
+        std::vector<std::uint32_t> samples_per_pixel;
+        if (counts) samples_per_pixel.assign(counts->data(), counts->data() + counts->size());
+        return region_sums_to(with_session([&](Session& session, const Progress& progress) {
+                                  return session.expose_region(region, first, count, samples_per_pixel, progress);
                               }),
                               region);
     }
 
+    /// Returns layer sums of a region's pixels, of the first surfaces that these samples hit.
     VoidArray see_region(const RegionNumbers& numbers, std::int64_t first, int count) {
         const FilmRegion region = region_from(numbers);
-        return layer_sums_to(taken([&](Session& session, const Progress& progress) {
+        return layer_sums_to(with_session([&](Session& session, const Progress& progress) {
                                  return session.see_region(region, first, count, progress);
                              }),
                              region);
     }
 
+    /// Returns the light on the whole film that is traced apart from the samples of pixels.
     SplatList expose_splats(std::int64_t first, int count) {
-        return splats_to(taken(
+        return splats_to(with_session(
             [&](Session& session, const Progress& progress) { return session.expose_splats(first, count, progress); }));
     }
 
+    /// Develops a film that was accumulated from parts, wherever they were exposed.
     PictureFields picture_of(const FilmArrays& arrays, const StatNumbers& stats) {
         AccumulatedFilm film = arrays.film();
         film.stats = stats_from(stats);
         film.stats.device = device_;
         LayerSet layers;
-        Image image = taken([&](Session& session, const Progress&) {
+        Image image = with_session([&](Session& session, const Progress&) {
             layers = settings_.layers;
             return session.picture_of(film, heed_signals);
         });
@@ -102,6 +111,7 @@ public:
 
     const std::string& device() const { return device_; }
 
+    /// Returns the number of samples of each pixel, an array (H, W).
     py::array_t<std::int64_t> samples() {
         SampleCounts samples = session_.use([](const auto& session) { return session->sample_counts(heed_signals); });
         return array_from(std::move(samples.counts), {samples.height, samples.width});
@@ -123,27 +133,34 @@ private:
 }  // namespace
 
 void bind_session(py::module_& m) {
-    py::class_<PythonSession>(m, "_Session")
+    py::class_<PythonSession>(m, "_Session", "Internal: use realcam.Session. One picture that accumulates samples.")
         .def(py::init<const Assembly&, const Camera&, const RenderSettings&, const std::string&>(), "scene"_a,
              "camera"_a, "settings"_a, "device"_a)
-        .def("set", &PythonSession::set, "scene"_a, "camera"_a, "settings"_a)
-        .def("add", &PythonSession::add, "spp"_a)
-        .def("add_until", &PythonSession::add_until, "wanted"_a)
-        .def("picture", &PythonSession::picture)
-        .def("expose_region", &PythonSession::expose_region, "region"_a, "first"_a, "count"_a, "counts"_a = py::none())
-        .def("see_region", &PythonSession::see_region, "region"_a, "first"_a, "count"_a)
-        .def("expose_splats", &PythonSession::expose_splats, "first"_a, "count"_a)
+        .def("set", &PythonSession::set, "scene"_a, "camera"_a, "settings"_a,
+             "Sets what is photographed. A change of the picture discards the samples.")
+        .def("add", &PythonSession::add, "spp"_a, "Takes spp more samples of each pixel.")
+        .def("add_until", &PythonSession::add_until, "settings"_a,
+             "Takes samples until the noise goal of these settings is reached.")
+        .def("picture", &PythonSession::picture, "Returns the fields of an Image of all samples so far.")
+        .def("expose_region", &PythonSession::expose_region, "region"_a, "first"_a, "count"_a, "counts"_a = py::none(),
+             R"(Returns pixel sums of a region, for count samples with indices from first. region: (column, row, width,
+height). counts: number of the samples that each pixel takes, row by row; None: all.)")
+        .def("see_region", &PythonSession::see_region, "region"_a, "first"_a, "count"_a,
+             "Returns layer sums of a region, of the first surfaces that these samples hit.")
+        .def("expose_splats", &PythonSession::expose_splats, "first"_a, "count"_a,
+             "Returns films of the light that is traced apart from the samples of pixels.")
         .def(
             "picture_of",
             [](PythonSession& self, const InputArray<PixelSum>& pixels,
                const std::optional<InputArray<LayerSum>>& layers, const SplatList& splats,
                const StatNumbers& stats) { return self.picture_of({pixels, layers, splats}, stats); },
-            "pixels"_a, "layers"_a, "splats"_a, "stats"_a)
-        .def("cancel", &PythonSession::cancel)
-        .def_property_readonly("device", &PythonSession::device)
-        .def_property_readonly("samples", &PythonSession::samples)
-        .def_property_readonly("scene", &PythonSession::scene)
-        .def_property_readonly("camera", &PythonSession::camera);
+            "pixels"_a, "layers"_a, "splats"_a, "stats"_a,
+            "Returns the fields of an Image of a film that was accumulated from parts.")
+        .def("cancel", &PythonSession::cancel, "Ends the running call of another thread, which raises Cancelled.")
+        .def_property_readonly("device", &PythonSession::device, "Name of the device, for people.")
+        .def_property_readonly("samples", &PythonSession::samples, "(H, W): number of samples of each pixel.")
+        .def_property_readonly("scene", &PythonSession::scene, "The current scene.")
+        .def_property_readonly("camera", &PythonSession::camera, "The current camera.");
 }
 
 }  // namespace realcam::bindings

@@ -1,3 +1,5 @@
+// Shots and videos: the classes CameraKey and Shake, and the reading of shot files for realcam.Shot.
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -39,9 +41,10 @@ struct RestoredCheck<Shake> {
 namespace {
 
 using Number = std::optional<double>;
+/// Point of a shake curve: (time_s, rotation_deg, position_m).
 using CurvePoint = std::tuple<double, Triple, Triple>;
 
-constexpr const char* kInterpolations[] = {"linear", "smooth", "step"};
+constexpr const char* kInterpolations[] = {"linear", "smooth", "step"};  ///< in the order of CameraKeyInterpolation
 
 CameraKeyInterpolation camera_key_interpolation_from(const std::string& name) {
     for (std::size_t i = 0; i < std::size(kInterpolations); ++i)
@@ -66,8 +69,8 @@ CameraKey make_key(double time_s, std::optional<LensSystem> lens, Number focus_m
 
 std::string text_of_key(const CameraKey& key) {
     std::string text = "<realcam.CameraKey at " + digits(key.time_s) + " s";
-    const auto add = [&](const char* before, const Number& value, const char* unit) {
-        if (value) text += std::string(", ") + before + digits(*value) + unit;
+    const auto add = [&](const char* label, const Number& value, const char* unit) {
+        if (value) text += std::string(", ") + label + digits(*value) + unit;
     };
     if (key.lens) text += ", " + key.lens->name;
     add("focus ", key.focus_m, " m");
@@ -100,6 +103,7 @@ std::string text_of_shake(const Shake& shake) {
     return text + '>';
 }
 
+/// Returns the angles in degrees and the displacements in metres at these times, arrays (N, 3).
 Typed<"tuple[NDArray[float64], NDArray[float64]]", py::tuple> shake_positions(const Shake& shake,
                                                                               const std::vector<double>& times_s) {
     const std::vector<ShakeKey> keys = shake_at(shake, times_s);
@@ -124,80 +128,90 @@ Typed<"tuple[tuple[float, tuple[float, float, float], tuple[float, float, float]
     return py::tuple(curve);
 }
 
-/// Throws InputError if the keys are invalid or the camera cannot take the state of one of them.
+/// Throws InputError if the keys are invalid or the camera cannot be set to one of them.
 void check_camera_keys(const Camera& camera, const std::vector<CameraKey>& keys) {
     validate(keys);
     check_keys(keys, "the camera", [&](const CameraKey& key) { check_key(camera, key_at(keys, key.time_s)); });
 }
 
+/// Returns the camera of the video frame whose shutter opens at `opens_s`, in seconds of the scene.
 Camera camera_at_time(const Camera& camera, const std::vector<CameraKey>& keys, const std::optional<Shake>& shake,
                       double opens_s) {
     const Unlocked unlocked;
     return shot::camera_at(camera, keys, shake.value_or(Shake{}), opens_s);
 }
 
+/// Returns the ISO of each frame of a video whose ISO is metered continuously. `frames`: frame numbers; `smoothing_s`:
+/// time constant of the adaptation.
 std::vector<double> followed_isos(const Assembly& scene, const Camera& camera, const std::vector<CameraKey>& keys,
-                                  const RenderSettings& settings, const std::vector<int>& numbers,
+                                  const RenderSettings& settings, const std::vector<int>& frames,
                                   double frames_per_second, double smoothing_s, const std::string& device) {
     const py::none no_callback;
     const Progress report = progress_of(no_callback);
     return OwnedSession::shared(device).use([&](const auto& session) {
         shot::FollowedIso followed(*session, scene, camera, keys, settings, frames_per_second, smoothing_s);
         std::vector<double> isos;
-        for (const int number : numbers) isos.push_back(followed.at(number, report));
+        for (const int frame : frames) isos.push_back(followed.at(frame, report));
         return isos;
     });
 }
 
 void bind_key(py::module_& m) {
-    py::class_<CameraKey> key(m, "CameraKey", "What the rings and dials of a camera say at a time of a film.");
+    py::class_<CameraKey> key(m, "CameraKey", "Keyframe of a camera's settings, at a time of a video.");
     def_hashable_value(key);
     key.def(py::init(&make_key), "time_s"_a, py::kw_only(), "lens"_a = py::none(), "focus_m"_a = py::none(),
             "focal_length_mm"_a = py::none(), "f_number"_a = py::none(), "blades"_a = py::none(),
             "blade_rounding"_a = py::none(), "blade_rotation_deg"_a = py::none(), "exposure_time_s"_a = py::none(),
             "iso"_a = py::none(), "film_shift_mm"_a = py::none(), "interpolation"_a = "linear",
-            R"(lens: a cut to another Lens, which is on the camera from here on; until the first of them, the camera's
-own is. The rings of a lens, focus_m to blade_rotation_deg, go between its own keys alone. One without
-keys for focus and f-number takes over those of the lens before, whatever it has itself.
-focus_m: object plane to film, or inf. focal_length_mm: of a zoom lens at rest. What is None is that of
-the keys beside. film_shift_mm: (right, up). Between keys it, 1 / focus_m, and rounding and angle of the
-blades change evenly, and the others by even ratios; lens and blades jump. interpolation: of the way
-from here on; "smooth" goes from rest to rest, and through the smooth keys between without a stop;
-"step" stays, and jumps at the next key. Raises InputError.)")
-        .def_readonly("time_s", &CameraKey::time_s)
-        .def_readonly("lens", &CameraKey::lens)
-        .def_readonly("focus_m", &CameraKey::focus_m)
-        .def_readonly("focal_length_mm", &CameraKey::focal_length_mm)
-        .def_readonly("f_number", &CameraKey::f_number)
-        .def_readonly("blades", &CameraKey::blades)
-        .def_readonly("blade_rounding", &CameraKey::blade_rounding)
-        .def_readonly("blade_rotation_deg", &CameraKey::blade_rotation_deg)
-        .def_readonly("exposure_time_s", &CameraKey::exposure_time_s)
-        .def_readonly("iso", &CameraKey::iso)
-        .def_property_readonly("film_shift_mm",
-                               [](const CameraKey& k) -> std::optional<std::pair<double, double>> {
-                                   if (!k.film_right_mm || !k.film_up_mm) return std::nullopt;
-                                   return std::pair(*k.film_right_mm, *k.film_up_mm);
-                               })
+            R"(A setting that is None is interpolated between the neighbouring keys that have a value.
+time_s: time of the key, in seconds of the scene.
+lens: a cut to another Lens, which the camera has from this key on; before the first key with a lens it has its own.
+  focus_m to blade_rotation_deg are interpolated between keys of the same lens only. A lens without keys for focus or
+  f-number takes over the last values of the lens before it.
+focus_m: distance from the object plane to the film, inf allowed. focal_length_mm: of a zoom lens focused at infinity.
+f_number: as engraved. blades: number of diaphragm blades. blade_rounding, blade_rotation_deg: see Lens().
+exposure_time_s, iso: exposure. film_shift_mm: (right, up), see Film().
+interpolation: from this key to the next: "linear"; "smooth": starts and ends with slope 0, and passes smooth keys in
+  between without a stop; "step": constant, with a jump at the next key.
+film_shift_mm, blade_rounding, blade_rotation_deg and 1 / focus_m are interpolated linearly, the other numbers in their
+logarithms; lens and blades jump. Raises InputError.)")
+        .def_readonly("time_s", &CameraKey::time_s, "Time of the key, in seconds of the scene.")
+        .def_readonly("lens", &CameraKey::lens, "Lens from this key on; None: no cut.")
+        .def_readonly("focus_m", &CameraKey::focus_m, "Distance from the object plane to the film.")
+        .def_readonly("focal_length_mm", &CameraKey::focal_length_mm,
+                      "Focal length of a zoom lens focused at infinity.")
+        .def_readonly("f_number", &CameraKey::f_number, "f-number as engraved.")
+        .def_readonly("blades", &CameraKey::blades, "Number of diaphragm blades from this key on.")
+        .def_readonly("blade_rounding", &CameraKey::blade_rounding, "0 for straight blade edges to 1 for a circle.")
+        .def_readonly("blade_rotation_deg", &CameraKey::blade_rotation_deg, "Rotation of the diaphragm.")
+        .def_readonly("exposure_time_s", &CameraKey::exposure_time_s, "Exposure time.")
+        .def_readonly("iso", &CameraKey::iso, "Sensitivity.")
+        .def_property_readonly(
+            "film_shift_mm",
+            [](const CameraKey& k) -> std::optional<std::pair<double, double>> {
+                if (!k.film_right_mm || !k.film_up_mm) return std::nullopt;
+                return std::pair(*k.film_right_mm, *k.film_up_mm);
+            },
+            "(right, up), shift of the film's centre from the lens's axis.")
         .def_property_readonly(
             "interpolation",
-            [](const CameraKey& k) { return kInterpolations[static_cast<std::size_t>(k.interpolation)]; })
+            [](const CameraKey& k) { return kInterpolations[static_cast<std::size_t>(k.interpolation)]; },
+            "\"linear\", \"smooth\" or \"step\", from this key to the next.")
         .def("__repr__", &text_of_key);
 }
 
 void bind_shake(py::module_& m) {
-    py::class_<Shake> shake(
-        m, "Shake",
-        "The shake of a camera in the hand: a curve that was measured, one that is drawn, or both, which are added.");
+    py::class_<Shake> shake(m, "Shake", "Camera shake: a measured curve, a random process, or the sum of both.");
     def_hashable_value(shake);
     shake
         .def(py::init(&make_shake), py::kw_only(), "rms_deg"_a = 0.0, "rms_mm"_a = 0.0, "corner_hz"_a = 1.0,
              "seed"_a = 0, "curve"_a = std::vector<CurvePoint>(),
-             R"(rms_deg, rms_mm: of each angle and of each shift, about and along the camera's axes to the right, up and
-back. Each is a Gaussian process of its own, drawn with the seed, with the one-sided spectrum
-4 rms^2 / (pi corner_hz) / (1 + (f / corner_hz)^2)^2 over the frequency f, up to ten corners.
-curve: (time_s, (x, y, z) in degrees, (x, y, z) in metres) in rising order of time; about x, then y,
-then z. Raises InputError.)")
+             R"(rms_deg, rms_mm: RMS of each rotation angle and of each displacement of the random process, about and
+  along the camera's axes right, up and backward. Each is an independent Gaussian process with the one-sided power
+  spectrum 4 rms^2 / (pi corner_hz) / (1 + (f / corner_hz)^2)^2 over the frequency f, up to 10 corner_hz.
+corner_hz: corner frequency of the spectrum. seed: of the random numbers.
+curve: list of (time_s, (x, y, z) in degrees, (x, y, z) in metres), in increasing order of time; rotations about x, then
+  y, then z. Raises InputError.)")
         .def_static(
             "load",
             [](const PathLike& path) {
@@ -205,19 +219,21 @@ then z. Raises InputError.)")
                 return Shake{.curve = shot::read_shake_curve(name)};
             },
             "path"_a,
-            R"(Reads a curve from a .csv, whose first line names its columns: time_s, x_deg, y_deg, z_deg, x_m, y_m,
-z_m; but for the time any may be missing. Raises InputError naming file and line.)")
+            R"(Reads a curve from a .csv file, whose first line names its columns: time_s, x_deg, y_deg, z_deg, x_m,
+y_m, z_m. All but time_s may be missing. Raises InputError with file and line.)")
         .def("at", &shake_positions, "times_s"_a,
-             "Where it has the camera at (N,) times: angles (N, 3) in degrees, and shifts (N, 3) in metres.")
-        .def_readonly("rms_deg", &Shake::rms_deg)
-        .def_readonly("rms_mm", &Shake::rms_mm)
-        .def_readonly("corner_hz", &Shake::corner_hz)
-        .def_readonly("seed", &Shake::seed)
-        .def_property_readonly("curve", &curve_of)
+             "Returns the rotations (N, 3) in degrees and the displacements (N, 3) in metres of the camera at times "
+             "(N,).")
+        .def_readonly("rms_deg", &Shake::rms_deg, "RMS of each angle of the random process.")
+        .def_readonly("rms_mm", &Shake::rms_mm, "RMS of each displacement of the random process.")
+        .def_readonly("corner_hz", &Shake::corner_hz, "Corner frequency of the spectrum.")
+        .def_readonly("seed", &Shake::seed, "Seed of the random process.")
+        .def_property_readonly("curve", &curve_of,
+                               "Measured curve: (time_s, (x, y, z) in degrees, (x, y, z) in metres) for each point.")
         .def("__repr__", &text_of_shake);
 }
 
-/// Returns the shot keys that are command line options.
+/// Returns (name, option, group, placeholder, help) of each key of shot files; see shot::ShotKey.
 Typed<"list[tuple[str, str | None, str, str, str]]", py::list> listed_shot_keys() {
     py::list keys;
     for (const shot::ShotKey& key : shot::shot_keys())
@@ -225,21 +241,23 @@ Typed<"list[tuple[str, str | None, str, str, str]]", py::list> listed_shot_keys(
     return keys;
 }
 
-/// Returns the command line options for values given by key name.
-std::vector<std::pair<const shot::ShotKey*, std::string>> options_of(const std::map<std::string, std::string>& words) {
+/// Returns pairs of shot key and value, in the order of the keys, for values by key name.
+std::vector<std::pair<const shot::ShotKey*, std::string>> options_of(const std::map<std::string, std::string>& values) {
     std::vector<std::pair<const shot::ShotKey*, std::string>> options;
     for (const shot::ShotKey& key : shot::shot_keys())
-        if (const auto word = words.find(key.name); word != words.end()) options.emplace_back(&key, word->second);
+        if (const auto value = values.find(key.name); value != values.end()) options.emplace_back(&key, value->second);
     return options;
 }
 
-/// Returns the fields of realcam.Shot by name, and true if neither a number of samples nor a noise goal is specified.
-/// `changes` and `words`: see shot::ShotChanges. `given`: a scene that replaces the file's, which messages call by the
-/// path; `lens`: replaces the request's; `denoises`: the picture will be denoised.
+/// Returns the attributes of realcam.Shot by name, and true if neither a number of samples nor a noise goal is
+/// specified. `path`: shot or scene file. `changes`: TOML text, and `options`: values by key name, which replace the
+/// file's (see shot::ShotChanges). `scene_in_memory`: replaces the file's scene; messages then call it by the path.
+/// `lens`: replaces the file's lens. `denoises`: true if the picture will be denoised.
 Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std::string& changes,
-                                                 const std::map<std::string, std::string>& words,
-                                                 const std::optional<Assembly>& given, std::optional<LensSystem> lens,
-                                                 bool denoises, const std::string& device) {
+                                                 const std::map<std::string, std::string>& options,
+                                                 const std::optional<Assembly>& scene_in_memory,
+                                                 std::optional<LensSystem> lens, bool denoises,
+                                                 const std::string& device) {
     shot::ShotRequest request;
     Camera camera;
     Assembly scene;
@@ -248,8 +266,8 @@ Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std
     const std::string name = path_from(path);
     {
         const Unlocked unlocked;
-        const shot::ShotChanges changed{changes, options_of(words)};
-        request = given ? shot::shot_of_scene(name, changed) : shot::read_shot(name, changed);
+        const shot::ShotChanges changed{changes, options_of(options)};
+        request = scene_in_memory ? shot::shot_of_scene(name, changed) : shot::read_shot(name, changed);
         request.lens_in_memory = std::move(lens);
         request.denoises = denoises;
         shot::resolve_noise_goal(request);
@@ -258,8 +276,8 @@ Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std
         shot::resolve_keys(request);
         camera = shot::camera_of(request);
         request.lens_options = {};  // its functions refer to local variables
-        scene = given ? shot::scene_of(request, *given, readers, heed_signals)
-                      : shot::scene_of(request, readers, heed_signals);
+        scene = scene_in_memory ? shot::scene_of(request, *scene_in_memory, readers, heed_signals)
+                                : shot::scene_of(request, readers, heed_signals);
     }
     for (const std::string& note : notes) warn(note);
     shot::Shot shot = shot::set_up(request, std::move(camera), std::move(scene));
@@ -276,6 +294,7 @@ Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std
     return py::make_tuple(std::move(fields), request.sampling == shot::Sampling::unsaid);
 }
 
+/// Returns the metadata of an image file, text by name.
 Typed<"dict[str, str]", py::dict> metadata(const Camera& camera, const RenderSettings& settings, int spp,
                                            std::uint32_t seed, const std::string& plan, const std::string& denoiser) {
     py::dict entries;
@@ -293,15 +312,24 @@ Typed<"dict[str, str]", py::dict> metadata(const Camera& camera, const RenderSet
 void bind_shot(py::module_& m) {
     bind_key(m);
     bind_shake(m);
-    m.def("_check_camera_keys", &check_camera_keys, "camera"_a, "keys"_a);
-    m.def("_camera_at", &camera_at_time, "camera"_a, "keys"_a, "shake"_a, "opens_s"_a);
-    m.def("_frames_to_plan", &shot::frames_to_plan, "numbers"_a, "camera"_a, "keys"_a, "frames_per_second"_a);
-    m.def("_frame_seed", &shot::frame_seed, "seed"_a, "number"_a);
-    m.def("_followed_isos", &followed_isos, "scene"_a, "camera"_a, "keys"_a, "settings"_a, "numbers"_a,
-          "frames_per_second"_a, "smoothing_s"_a, "device"_a);
-    m.def("_shot_keys", &listed_shot_keys);
-    m.def("_read_shot", &read_shot, "path"_a, "changes"_a, "words"_a, "scene"_a, "lens"_a, "denoises"_a, "device"_a);
-    m.def("_metadata", &metadata, "camera"_a, "settings"_a, "spp"_a, "seed"_a, "plan"_a, "denoiser"_a);
+    m.def("_check_camera_keys", &check_camera_keys, "camera"_a, "keys"_a,
+          "Internal. Raises InputError if keys are invalid or the camera cannot be set to one of them.");
+    m.def("_camera_at", &camera_at_time, "camera"_a, "keys"_a, "shake"_a, "opens_s"_a,
+          "Internal. Returns the camera of the frame whose shutter opens at opens_s, in seconds of the scene.");
+    m.def("_frames_to_plan", &shot::frames_to_plan, "numbers"_a, "camera"_a, "keys"_a, "frames_per_second"_a,
+          "Internal. Selects from the frame numbers of a video those whose cameras the planner looks at.");
+    m.def("_frame_seed", &shot::frame_seed, "seed"_a, "number"_a, "Internal. Returns the seed of a frame of a video.");
+    m.def("_followed_isos", &followed_isos, "scene"_a, "camera"_a, "keys"_a, "settings"_a, "frames"_a,
+          "frames_per_second"_a, "smoothing_s"_a, "device"_a,
+          "Internal. Returns the ISO of each frame of a video with continuous metering. smoothing_s: time constant.");
+    m.def("_shot_keys", &listed_shot_keys,
+          "Internal. Returns (name, option, group, placeholder, help) of each key of shot files; option may be None.");
+    m.def("_read_shot", &read_shot, "path"_a, "changes"_a, "options"_a, "scene"_a, "lens"_a, "denoises"_a, "device"_a,
+          R"(Internal: use realcam.Shot. Returns the attributes of a Shot, and True if neither spp nor a noise goal is
+specified. changes: TOML text that overrides the file; options: values by key name, as on the command line. scene, lens:
+replace those of the file unless None. denoises: True if the picture will be denoised. device: meters the exposure.)");
+    m.def("_metadata", &metadata, "camera"_a, "settings"_a, "spp"_a, "seed"_a, "plan"_a, "denoiser"_a,
+          "Internal. Returns the metadata of an image file, text by name.");
 }
 
 }  // namespace realcam::bindings

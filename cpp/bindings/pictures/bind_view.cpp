@@ -1,3 +1,5 @@
+// Film size, view and exposure that are chosen automatically, for Python and the command line alike.
+
 #include <pybind11/stl.h>
 
 #include <array>
@@ -17,14 +19,15 @@ using namespace py::literals;
 
 namespace {
 
-std::optional<Vec3d> vector_if(const std::optional<Triple>& v) {
+std::optional<Vec3d> optional_vector_of(const std::optional<Triple>& v) {
     return v ? std::optional(vector_of(*v)) : std::nullopt;
 }
 
 Camera framed(Camera camera, const Assembly& scene, const std::optional<Triple>& position,
               const std::optional<Triple>& look_at, const Triple& up, std::optional<double> focus_m,
               const std::string& scene_camera) {
-    set_view(camera, scene, {vector_if(position), vector_if(look_at), vector_of(up), focus_m, scene_camera});
+    set_view(camera, scene,
+             {optional_vector_of(position), optional_vector_of(look_at), vector_of(up), focus_m, scene_camera});
     return camera;
 }
 
@@ -51,31 +54,36 @@ Assembly with_daylight(const Assembly& scene, const Camera& camera) {
 
 }  // namespace
 
-// Choices of the command line for options that the user omits; the C++ program makes the same ones.
 void bind_view(py::module_& m) {
     py::reinterpret_borrow<py::class_<Film>>(m.attr("Film"))
         .def_static("for_lens", &film_for_lens, "lens"_a, "size_mm"_a = py::none(), "resolution"_a = py::none(),
-                    R"(A film for a lens. size_mm: (width, height); resolution: (columns, rows). None is chosen: the
-size that the lens was made for, 960 square pixels along the longer side; of a resolution alone
-the largest part of the lens's film that has its shape. Raises InputError.)");
+                    R"(Returns a Film for a lens.
+size_mm: (width, height); None: the size for which the lens is designed, or, if resolution is specified, the largest
+  part of it with the shape of the resolution.
+resolution: (columns, rows); None: 960 square pixels along the longer side.
+Raises InputError.)");
     py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
         .def("framing", &framed, "scene"_a, py::kw_only(), "position"_a = py::none(), "look_at"_a = py::none(),
              "up"_a = Triple{0, 1, 0}, "focus_distance_m"_a = py::none(), "scene_camera"_a = "",
-             R"(The camera where it has the scene in its picture, in focus: position, look_at and focus_distance_m as
-given, and what is None chosen. scene_camera: the name of one of scene.cameras, whose place, direction
-and motion to take, or "none"; where nothing is said of the view it is the first of them. Without one the
-view follows the rules of docs/scenes.md: an object from its front (+z, or -y where up is z), slightly above
-and aside, where it fills nine tenths of the film, and a room from its open side or from a corner inside.
-Of the camera itself lens, film, model and exposure stay. Raises InputError.)")
-        .def("metered", &metered, "scene"_a, py::kw_only(), "device"_a = "auto", "max_bounces"_a = "auto",
-             "progress"_a = py::none(),
-             R"(The camera with the exposure time that brings the average of its picture of the scene to middle grey at
-its ISO, from a small picture with so many reflections (see render, as for device and progress).
-Raises InputError where no light reaches the film; DeviceError.)");
+             R"(Returns the camera with a view of the scene, in focus. Lens, film, model and exposure stay.
+position, look_at: (x, y, z) in m, scene; None: chosen automatically. up: the upward direction.
+focus_distance_m: distance from the plane in focus to the film; None: focus on the subject.
+scene_camera: name of the one of scene.cameras whose position, direction and motion are used; "none": do not use one;
+  "": the first of them, if neither position nor look_at is specified.
+Without a scene camera the view follows the rules of docs/scenes.md: an object is seen from its front (+z, or -y if up
+is z), slightly from above and the side, and fills nine tenths of the film; a room is seen from its open side, or from
+a corner inside. Raises InputError.)")
+        .def(
+            "metered", &metered, "scene"_a, py::kw_only(), "device"_a = "auto", "max_bounces"_a = "auto",
+            "progress"_a = py::none(),
+            R"(Returns the camera with the exposure time at which the average of its picture of the scene becomes middle
+grey at its ISO, measured on a small picture. device, max_bounces, progress: as for realcam.render.
+Raises InputError if no light reaches the film; DeviceError.)");
     py::reinterpret_borrow<py::class_<Assembly>>(m.attr("Scene"))
-        .def("with_daylight", &with_daylight, "camera"_a,
-             R"(The scene under a sun of 80 klux, from the upper left behind the camera, and a sky of 5000 cd/m^2 in
-place of its environment: f/16, 1/125 s and ISO 100 expose it.)");
+        .def(
+            "with_daylight", &with_daylight, "camera"_a,
+            R"(Returns the scene with additional daylight: a sun of 80 klux from the upper left behind the camera, and a
+uniform sky of 5000 cd/m^2 instead of the environment. f/16, 1/125 s and ISO 100 expose it correctly.)");
 }
 
 }  // namespace realcam::bindings

@@ -1,4 +1,5 @@
-// OpenImageIO's Python package, called through realcam.openimageio_package.
+// Decoding and encoding of image files by OpenImageIO's Python package, which is called through
+// realcam.openimageio_package. Implements the functions of image_io/openimageio.hpp for the extension module.
 
 #include <fcntl.h>
 #include <pybind11/numpy.h>
@@ -21,8 +22,8 @@ namespace {
 namespace py = pybind11;
 using namespace py::literals;
 
-/// Open file, passed to the package by a name that is independent of the file's own, which need not be UTF-8 or exist
-/// at all.
+/// Open file descriptor. The package opens it by a name in /dev/fd, because the file's own name need not be UTF-8, and
+/// a file in memory has none.
 class Descriptor {
 public:
     explicit Descriptor(int number) : number_(number) {
@@ -39,6 +40,7 @@ private:
     int number_;
 };
 
+/// Returns a descriptor of a new, empty file in memory; -1 with errno set if that fails.
 int memory_file() {
     return memfd_create("realcam", MFD_CLOEXEC);
 }
@@ -55,18 +57,20 @@ bool write_all(int descriptor, const char* data, std::size_t size) {
     return true;
 }
 
-/// Object of the Python module. Created and released with the GIL; callers do not hold the GIL.
+/// Object of the Python module. The constructor and the destructor acquire the GIL; callers must not hold it.
 class PackageObject {
 public:
+    /// Calls the class `type` of the module with these arguments. Throws Error if the file cannot be opened or is
+    /// broken.
     template <class... Arguments>
     explicit PackageObject(const char* type, const Arguments&... arguments) {
         const py::gil_scoped_acquire acquire;
         try {
             object_ = py::module_::import("realcam.openimageio_package").attr(type)(arguments...);
         } catch (py::error_already_set& error) {
-            const auto said = [&] { return py::str(error.value()).cast<std::string>(); };
-            if (error.matches(PyExc_ValueError)) throw Error(kBroken + reason(said()));
-            if (error.matches(PyExc_OSError) || error.matches(PyExc_ImportError)) throw Error(first_line(said()));
+            const auto message = [&] { return py::str(error.value()).cast<std::string>(); };
+            if (error.matches(PyExc_ValueError)) throw Error(kBroken + reason(message()));
+            if (error.matches(PyExc_OSError) || error.matches(PyExc_ImportError)) throw Error(first_line(message()));
             throw;
         }
     }
@@ -77,7 +81,7 @@ public:
         object_ = py::object();
     }
 
-    /// Requires the GIL.
+    /// Returns an attribute of the object. Requires the GIL.
     py::object attr(const char* name) const { return object_.attr(name); }
 
 private:
@@ -88,9 +92,9 @@ class PackageDecoder final : public PictureDecoder {
 public:
     PackageDecoder(const std::string& format, const std::string& path, std::span<const std::uint8_t> bytes)
         : file_(path.empty() ? memory_file() : open(path.c_str(), O_RDONLY | O_CLOEXEC)),
-          input_("Decoder", format, with(bytes)) {
+          decoder_("Decoder", format, file_name(bytes)) {
         const py::gil_scoped_acquire acquire;
-        for (const py::handle header : input_.attr("headers")) parts.push_back(header_of(header.cast<py::dict>()));
+        for (const py::handle header : decoder_.attr("headers")) parts.push_back(header_of(header.cast<py::dict>()));
     }
 
     Outcome read(const EncodedRegion& region, std::uint8_t* pixels) override {
@@ -99,28 +103,29 @@ public:
     Outcome read(const EncodedRegion& region, float* pixels) override { return read_as(region, "float", pixels); }
 
 private:
-    static EncodedHeader header_of(const py::dict& found) {
+    /// Converts a header of the Python module.
+    static EncodedHeader header_of(const py::dict& dict) {
         EncodedHeader header;
-        const auto number = [&](const char* name) { return found[name].cast<int>(); };
+        const auto number = [&](const char* name) { return dict[name].cast<int>(); };
         header.x = number("x"), header.y = number("y");
         header.width = number("width"), header.height = number("height"), header.depth = number("depth");
         header.full_x = number("full_x"), header.full_y = number("full_y");
         header.full_width = number("full_width"), header.full_height = number("full_height");
-        header.part_name = found["part_name"].cast<std::string>();
-        for (const auto& [name, is_number] : found["channels"].cast<std::vector<std::pair<std::string, bool>>>())
+        header.part_name = dict["part_name"].cast<std::string>();
+        for (const auto& [name, is_number] : dict["channels"].cast<std::vector<std::pair<std::string, bool>>>())
             header.channel_names.push_back({name, is_number});
         header.bytes_per_value = number("bytes_per_value");
         header.tile_height = number("tile_height");
-        header.is_floating_point = found["is_floating_point"].cast<bool>();
-        header.is_deep = found["deep"].cast<bool>();
-        header.chromaticities = found["chromaticities"].cast<std::optional<std::array<float, 8>>>();
-        header.texture_format = found["textureformat"].cast<std::string>();
-        header.entries = found["entries"].cast<decltype(header.entries)>();
+        header.is_floating_point = dict["is_floating_point"].cast<bool>();
+        header.is_deep = dict["deep"].cast<bool>();
+        header.chromaticities = dict["chromaticities"].cast<std::optional<std::array<float, 8>>>();
+        header.texture_format = dict["textureformat"].cast<std::string>();
+        header.entries = dict["entries"].cast<decltype(header.entries)>();
         return header;
     }
 
-    /// Writes the bytes to the file, if it is a memory file, and returns its name.
-    std::string with(std::span<const std::uint8_t> bytes) const {
+    /// Writes the bytes, if there are any, to the file in memory, and returns the name under which to open the file.
+    std::string file_name(std::span<const std::uint8_t> bytes) const {
         if (!write_all(file_.number(), reinterpret_cast<const char*>(bytes.data()), bytes.size()))
             throw Error(std::strerror(errno));
         return file_.name();
@@ -129,20 +134,20 @@ private:
     template <class Value>
     Outcome read_as(const EncodedRegion& r, const char* type, Value* pixels) {
         const py::gil_scoped_acquire acquire;
-        const auto [rows, said] =
-            input_.attr("read")(r.part, r.first_row, r.end_row, r.first_channel, r.end_channel, type)
+        const auto [rows, message] =
+            decoder_.attr("read")(r.part, r.first_row, r.end_row, r.first_channel, r.end_channel, type)
                 .cast<std::pair<py::object, std::string>>();
-        if (rows.is_none()) return {false, said};
+        if (rows.is_none()) return {false, message};
         const auto values = rows.cast<py::array_t<Value, py::array::c_style>>();
-        const auto wanted = py::ssize_t{r.end_row - r.first_row} * parts[static_cast<std::size_t>(r.part)].width *
-                            (r.end_channel - r.first_channel);
-        if (values.size() != wanted) return {false, said};
-        std::memcpy(pixels, values.data(), static_cast<std::size_t>(wanted) * sizeof(Value));
-        return {true, said};
+        const auto expected_size = py::ssize_t{r.end_row - r.first_row} *
+                                   parts[static_cast<std::size_t>(r.part)].width * (r.end_channel - r.first_channel);
+        if (values.size() != expected_size) return {false, message};
+        std::memcpy(pixels, values.data(), static_cast<std::size_t>(expected_size) * sizeof(Value));
+        return {true, message};
     }
 
     Descriptor file_;
-    PackageObject input_;
+    PackageObject decoder_;
 };
 
 /// Encodes the file in memory and then copies it, because the package does not report a full disk.
@@ -153,14 +158,14 @@ public:
           memory_(memory_file()),
           row_bytes_(static_cast<std::size_t>(picture.width) *
                      (picture.channels.empty() ? 3 : 4 * picture.channels.size())),
-          output_("Encoder", picture.format, memory_.name(), picture.width, picture.height, channels_of(picture),
-                  picture.attributes) {}
+          encoder_("Encoder", picture.format, memory_.name(), picture.width, picture.height, channels_of(picture),
+                   picture.attributes) {}
 
     Outcome write(int first, int end, const void* pixels) override {
         if (is_full_) return {true, ""};  // after an error OpenEXR would block for ever in further writes
         const py::gil_scoped_acquire acquire;
         const auto size = static_cast<py::ssize_t>(static_cast<std::size_t>(end - first) * row_bytes_);
-        return outcome_of(output_.attr("write")(first, end, py::memoryview::from_memory(pixels, size)));
+        return outcome_of(encoder_.attr("write")(first, end, py::memoryview::from_memory(pixels, size)));
     }
 
     Outcome close() override {
@@ -168,7 +173,7 @@ public:
         Outcome outcome;
         {
             const py::gil_scoped_acquire acquire;
-            outcome = outcome_of(output_.attr("close")());
+            outcome = outcome_of(encoder_.attr("close")());
         }
         if (outcome.is_good && outcome.said.empty() && !is_full_) copy();
         return outcome;
@@ -182,37 +187,40 @@ private:
         return channels;
     }
 
-    /// Limits on file sizes apply to memory files, too; the failure is reported by the file, like a full disk.
+    /// Converts the result of a call, a pair (success, message). If the file in memory has reached the process's limit
+    /// on file sizes, the failure is left to the UnfinishedFile, which reports it like a full disk, and the call
+    /// succeeds.
     Outcome outcome_of(const py::object& result) {
-        const auto [good, said] = result.cast<std::pair<bool, std::string>>();
+        const auto [good, message] = result.cast<std::pair<bool, std::string>>();
         struct stat status{};
         struct rlimit limit{};
-        if ((!good || !said.empty()) && fstat(memory_.number(), &status) == 0 && getrlimit(RLIMIT_FSIZE, &limit) == 0 &&
-            static_cast<rlim_t>(status.st_size) >= limit.rlim_cur) {
+        if ((!good || !message.empty()) && fstat(memory_.number(), &status) == 0 &&
+            getrlimit(RLIMIT_FSIZE, &limit) == 0 && static_cast<rlim_t>(status.st_size) >= limit.rlim_cur) {
             file_.remember_failure(EFBIG);
             is_full_ = true;
             return {true, ""};
         }
-        return {good, said};
+        return {good, message};
     }
 
+    /// Copies the file in memory to the UnfinishedFile, which remembers a failure.
     void copy() {
         std::vector<char> part(1 << 20);
-        for (off_t at = 0;;) {
-            const ssize_t read = pread(memory_.number(), part.data(), part.size(), at);
+        for (off_t offset = 0;;) {
+            const ssize_t read = pread(memory_.number(), part.data(), part.size(), offset);
             if (read < 0 && errno == EINTR) continue;
             if (read == 0) return;
             if (read < 0 || !write_all(fileno(file_.stream()), part.data(), static_cast<std::size_t>(read)))
                 return file_.remember_failure(errno);
-            at += read;
+            offset += read;
         }
     }
 
     UnfinishedFile& file_;
     Descriptor memory_;
     std::size_t row_bytes_;
-    bool is_full_ = false;
-    PackageObject output_;
+    bool is_full_ = false;  ///< true after the limit on file sizes was reached
+    PackageObject encoder_;
 };
 
 }  // namespace

@@ -11,8 +11,8 @@ namespace realcam::bindings {
 
 namespace {
 
-/// Owners whose work is stopped when Python exits, guarded by the GIL. Shared sessions are not included: their calls
-/// stop by themselves, and a user's progress function may never return.
+/// Owners whose work is cancelled when Python exits, guarded by the GIL. Shared sessions are not included: their calls
+/// check for the exit themselves, and a user's progress function may never return.
 std::set<const OwnedSession*>& owners() {
     static auto* const set = new std::set<const OwnedSession*>;
     return *set;
@@ -21,14 +21,14 @@ std::set<const OwnedSession*>& owners() {
 }  // namespace
 
 OwnedSession::OwnedSession(std::string device, Make make)
-    : OwnedSession(std::move(device), make, std::make_shared<Turnstile>()) {
-    static const bool is_stopped_at_exit = (stop_too_at_exit(&cancel_all), true);
+    : OwnedSession(std::move(device), make, std::make_shared<Mutex>()) {
+    static const bool is_stopped_at_exit = (call_at_exit(&cancel_all), true);
     static_cast<void>(is_stopped_at_exit);
     owners().insert(this);
 }
 
-OwnedSession::OwnedSession(std::string device, Make make, std::shared_ptr<Turnstile> turnstile)
-    : device_(std::move(device)), make_(make), turnstile_(std::move(turnstile)) {}
+OwnedSession::OwnedSession(std::string device, Make make, std::shared_ptr<Mutex> mutex)
+    : device_(std::move(device)), make_(make), mutex_(std::move(mutex)) {}
 
 OwnedSession::~OwnedSession() {
     owners().erase(this);
@@ -39,9 +39,9 @@ OwnedSession::~OwnedSession() {
 OwnedSession& OwnedSession::shared(const std::string& device) {
     // The GIL guards the map: this function neither runs Python code nor waits.
     static auto* const sessions = new std::map<std::string, OwnedSession*>;
-    static auto* const turnstile = new std::shared_ptr<Turnstile>(std::make_shared<Turnstile>());
+    static auto* const mutex = new std::shared_ptr<Mutex>(std::make_shared<Mutex>());
     OwnedSession*& session = (*sessions)[device];
-    if (!session) session = new OwnedSession(device, &make_session, *turnstile);
+    if (!session) session = new OwnedSession(device, &make_session, *mutex);
     return *session;
 }
 
@@ -52,7 +52,7 @@ void OwnedSession::cancel(Collected collected) const {
     session->cancel(collected);
 }
 
-const std::shared_ptr<Session>& OwnedSession::made() {
+const std::shared_ptr<Session>& OwnedSession::session() {
     if (session_) return session_;
     std::shared_ptr<Session> session = make_(device_, warn);
     const py::gil_scoped_acquire acquire;
@@ -76,13 +76,13 @@ void OwnedSession::cancel_all() {
     }
 }
 
-OwnedSession::Turn::Turn(Turnstile& turnstile) : turnstile_(turnstile), lock_(turnstile.mutex, std::defer_lock) {
-    if (turnstile.holder == std::this_thread::get_id())
+OwnedSession::Lock::Lock(Mutex& mutex) : mutex_(mutex), lock_(mutex.mutex, std::defer_lock) {
+    if (mutex.holder == std::this_thread::get_id())
         throw InputError(
             "a progress function or a signal handler cannot take a picture with the session whose work it interrupts");
     while (!lock_.try_lock_for(std::chrono::milliseconds(50))) heed_signals();
     stop_at_exit();
-    turnstile.holder = std::this_thread::get_id();
+    mutex.holder = std::this_thread::get_id();
 }
 
 }  // namespace realcam::bindings

@@ -15,6 +15,7 @@ py::tuple texts_from(const IdNames& names) {
     return texts;
 }
 
+/// Returns a layer as an array (H, W) or (H, W, channels).
 py::array array_of_layer(LayerImage layer, py::ssize_t height, py::ssize_t width) {
     const LayerInfo& info = info_of(layer.layer);
     if (info.is_number) return array_from(std::move(layer.numbers), {height, width});

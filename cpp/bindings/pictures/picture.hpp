@@ -4,8 +4,8 @@
 
 namespace realcam::bindings {
 
-/// Returns the fields of a Python Image by name: among them a dict of the requested layers, and the names of objects
-/// and materials by their ids.
+/// Returns the attributes of a realcam.Image by name. "layers" is a dict of the requested layers' arrays;
+/// "object_names" and "material_names" are tuples indexed by the ids in those layers.
 PictureFields picture_from(Image image, LayerSet layers);
 
 }  // namespace realcam::bindings

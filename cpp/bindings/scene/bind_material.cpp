@@ -1,3 +1,5 @@
+// The Python class Material, and the materials of a Scene.
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -16,13 +18,14 @@ using namespace py::literals;
 
 namespace {
 
-using Which = std::variant<py::ssize_t, py::str>;
+using Which = std::variant<py::ssize_t, py::str>;  ///< index or name of a material of a scene
 using ColourTuple = Typed<"tuple[float, float, float]", py::tuple>;
 using TexturePixels = Typed<"NDArray[uint8] | NDArray[float32] | None">;
 
-std::size_t texture_index(TextureReference Material::* wanted) {
+/// Returns the index in kMaterialTextures of a texture member.
+std::size_t texture_index(TextureReference Material::* member) {
     std::size_t i = 0;
-    while (kMaterialTextures[i] != wanted) ++i;
+    while (kMaterialTextures[i] != member) ++i;
     return i;
 }
 
@@ -85,6 +88,7 @@ struct Field {
     Member member;
     const char* text;
 
+    /// Type of the property, and of the constructor's argument.
     using Property = decltype(value(std::declval<PythonMaterial>(), std::declval<Member>()));
     using Value = std::conditional_t<std::is_same_v<Property, TexturePixels>, OptionalArrayLike, Property>;
     Field(const char* name, Member member, const char* text = "") : name(name), member(member), text(text) {}
@@ -113,7 +117,8 @@ void def_property(py::class_<PythonMaterial>& material, const Field<Member>& fie
     material.def_property_readonly(field.name, get, field.text);
 }
 
-PythonMaterial with_numbers(PythonMaterial m, const std::optional<Colour>& diffuse,
+/// See Material.replace.
+PythonMaterial with_changes(PythonMaterial m, const std::optional<Colour>& diffuse,
                             const std::optional<Colour>& specular, std::optional<float> shininess,
                             const std::optional<Colour>& emission,
                             const Typed<"ArrayLike | types.EllipsisType | None">& texture,
@@ -166,6 +171,7 @@ Typed<"dict[str, Material]", py::dict> materials_of(const Assembly& scene) {
     return materials;
 }
 
+/// Returns the index of a material of the static geometry. Throws InputError if there is no such material.
 std::size_t find_material(const Assembly& scene, const Which& which) {
     const std::vector<std::string> names = material_names(*scene.static_geometry);
     std::string all;
@@ -176,9 +182,9 @@ std::size_t find_material(const Assembly& scene, const Which& which) {
             if (text_from(names[i]).equal(*name)) return i;
         throw InputError("there is no material " + py::repr(*name).cast<std::string>() + "; the scene has " + all);
     }
-    const auto number = std::get<py::ssize_t>(which);
-    if (number >= 0 && static_cast<std::size_t>(number) < names.size()) return static_cast<std::size_t>(number);
-    throw InputError("there is no material " + std::to_string(number) + "; the scene has " +
+    const auto index = std::get<py::ssize_t>(which);
+    if (index >= 0 && static_cast<std::size_t>(index) < names.size()) return static_cast<std::size_t>(index);
+    throw InputError("there is no material " + std::to_string(index) + "; the scene has " +
                      std::to_string(names.size()) + " (counted from 0)");
 }
 
@@ -201,49 +207,62 @@ Assembly with_texture(const Assembly& scene, const Which& which, const ArrayLike
 
 void bind_material(py::module_& m) {
     py::class_<PythonMaterial> material(m, "Material",
-                                        "How a surface reflects and emits light. Colours are linear Rec. 709.");
+                                        R"(Reflection, transmission and emission of a surface. Colours are linear
+Rec. 709. Material() creates a Phong material as in Wavefront's MTL files, Material.metallic_roughness one as in
+glTF; both describe their properties.)");
     def_hashable_value(material);
     using M = Material;
-    const std::tuple both{Field{"name", &PythonMaterial::name},
-                          Field{"emission", &M::emission},
-                          Field{"transmission", &M::transmission},
-                          Field{"ior", &M::ior},
-                          Field{"absorption", &M::absorption, "Per metre."},
-                          Field{"thin", &M::is_thin},
-                          Field{"normal_scale", &M::normal_scale},
-                          Field{"opacity", &M::opacity},
-                          Field{"opacity_cutoff", &M::opacity_cutoff},
-                          Field{"double_sided", &M::emits_on_both_sides},
-                          Field{"texture", &M::diffuse_texture,
-                                "(H, W, 4), read-only: uint8 codes, or float32 of linear light; None: none."},
-                          Field{"specular_texture", &M::specular_texture},
-                          Field{"emission_texture", &M::emission_texture},
-                          Field{"transmission_texture", &M::transmission_texture},
-                          Field{"opacity_texture", &M::opacity_texture},
-                          Field{"normal_map", &M::normal_texture}};
+    constexpr const char* kScalarTexture = "Texture, linear, (H, W, 4), read-only; None: there is none.";
+    const std::tuple both{
+        Field{"name", &PythonMaterial::name, "Name in Scene.materials; may be empty."},
+        Field{"emission", &M::emission, "Emitted radiance in cd/m^2."},
+        Field{"transmission", &M::transmission, "Fraction of the surface that is a smooth dielectric interface."},
+        Field{"ior", &M::ior, "Index of refraction inside."},
+        Field{"absorption", &M::absorption, "Absorption coefficient inside, per metre."},
+        Field{"thin", &M::is_thin, "True for a thin film, behind which light continues in its direction."},
+        Field{"normal_scale", &M::normal_scale, "Factor on x and y of the normal map."},
+        Field{"opacity", &M::opacity, "Opacity, 0 to 1."},
+        Field{"opacity_cutoff", &M::opacity_cutoff, "Opacity from which the surface is opaque; 0: partial opacity."},
+        Field{"double_sided", &M::emits_on_both_sides, "True if both sides emit light."},
+        Field{"texture", &M::diffuse_texture,
+              R"(Texture of the diffuse or base colour, (H, W, 4), read-only: uint8 sRGB codes, or float32 of linear
+light; None: there is none.)"},
+        Field{"specular_texture", &M::specular_texture,
+              "Texture of specular, in the format of texture; None: there is none."},
+        Field{"emission_texture", &M::emission_texture,
+              "Texture of emission, in the format of texture; None: there is none."},
+        Field{"transmission_texture", &M::transmission_texture, kScalarTexture},
+        Field{"opacity_texture", &M::opacity_texture, kScalarTexture},
+        Field{"normal_map", &M::normal_texture, "Normal map, linear, (H, W, 4), read-only; None: there is none."}};
     const std::tuple phong{
-        Field{"diffuse", &M::diffuse, "Reflectance; of metallic_roughness the base colour."},
-        Field{"specular", &M::specular, "Reflectance of Phong's lobe; of metallic_roughness the specular_color."},
-        Field{"shininess", &M::shininess},
-        Field{"mirror", &M::mirror},
-        Field{"fresnel", &M::fresnel},
-        Field{"filter", &M::filter},
-        Field{"shadow_catcher", &M::only_shadows}};
-    const std::tuple metallic_roughness{Field{"metallic", &M::metallic},
-                                        Field{"roughness", &M::roughness},
-                                        Field{"specular_weight", &M::specular_weight},
-                                        Field{"clearcoat", &M::clearcoat},
-                                        Field{"clearcoat_roughness", &M::clearcoat_roughness},
-                                        Field{"clearcoat_normal_scale", &M::clearcoat_normal_scale},
-                                        Field{"metallic_roughness_texture", &M::metallic_roughness_texture,
-                                              "Of Wavefront's material: the shininess_texture."},
-                                        Field{"specular_weight_texture", &M::specular_weight_texture},
-                                        Field{"clearcoat_texture", &M::clearcoat_texture},
-                                        Field{"clearcoat_roughness_texture", &M::clearcoat_roughness_texture},
-                                        Field{"clearcoat_normal_map", &M::clearcoat_normal_texture}};
+        Field{"diffuse", &M::diffuse, "Diffuse reflectance; base colour of a metallic_roughness material."},
+        Field{"specular", &M::specular,
+              "Reflectance of the Phong lobe; specular_color of a metallic_roughness material."},
+        Field{"shininess", &M::shininess, "Phong exponent."},
+        Field{"mirror", &M::mirror, "Specular reflectance at normal incidence."},
+        Field{"fresnel", &M::fresnel, "True if specular reflection depends on the angle of incidence."},
+        Field{"filter", &M::filter, "Factor on transmitted light."},
+        Field{"shadow_catcher", &M::only_shadows, "True for a surface that is visible only by shadows on it."}};
+    const std::tuple metallic_roughness{
+        Field{"metallic", &M::metallic, "0 for a dielectric to 1 for a metal."},
+        Field{"roughness", &M::roughness, "Roughness, 0 to 1; the GGX parameter alpha is its square."},
+        Field{"specular_weight", &M::specular_weight, "Factor on the dielectric's reflection."},
+        Field{"clearcoat", &M::clearcoat, "Fraction of the surface with a clear coat."},
+        Field{"clearcoat_roughness", &M::clearcoat_roughness, "Roughness of the clear coat, 0 to 1."},
+        Field{"clearcoat_normal_scale", &M::clearcoat_normal_scale, "Factor on x and y of clearcoat_normal_map."},
+        Field{
+            "metallic_roughness_texture", &M::metallic_roughness_texture,
+            R"(Texture of roughness (green) and metallic (blue), linear, (H, W, 4), read-only; shininess_texture of a
+Phong material. None: there is none.)"},
+        Field{"specular_weight_texture", &M::specular_weight_texture, kScalarTexture},
+        Field{"clearcoat_texture", &M::clearcoat_texture, kScalarTexture},
+        Field{"clearcoat_roughness_texture", &M::clearcoat_roughness_texture, kScalarTexture},
+        Field{"clearcoat_normal_map", &M::clearcoat_normal_texture,
+              "Normal map of the clear coat, linear, (H, W, 4), read-only; None: there is none."}};
     // Names that exist only as constructor arguments.
-    const std::tuple also_phong{Field{"shininess_texture", &M::metallic_roughness_texture}};
-    const std::tuple also_metallic_roughness{Field{"base_color", &M::diffuse}, Field{"specular_color", &M::specular}};
+    const std::tuple phong_arguments{Field{"shininess_texture", &M::metallic_roughness_texture}};
+    const std::tuple metallic_roughness_arguments{Field{"base_color", &M::diffuse},
+                                                  Field{"specular_color", &M::specular}};
     std::apply([&](const auto&... fields) { (def_property(material, fields), ...); },
                std::tuple_cat(both, phong, metallic_roughness));
     PythonMaterial initial;
@@ -251,24 +270,28 @@ void bind_material(py::module_& m) {
         [&](const auto&... fields) {
             material.def(py::init(maker(initial, fields...)), py::kw_only(),
                          (py::arg(fields.name) = value(initial, fields.member))...,
-                         R"(Wavefront's material (MTL). diffuse, specular: reflectance of Lambert's and of Phong's lobe;
-shininess: Phong exponent; emission: radiance in cd/m^2, on the side from which the corners run counter-clockwise;
-mirror: reflectance as a mirror, at normal incidence; fresnel: whether it grows towards grazing incidence (Schlick),
-and a smooth border reflects as its index says; transmission: share of the surface that is a smooth border between
-outside and a medium of index ior, which multiplies what passes by filter and absorbs on the way, per metre; thin: a
-film, behind which light goes on as it came. texture, specular_texture, emission_texture: what diffuse, specular and
-emission are multiplied by, (H, W) grey, (H, W, 3) or (H, W, 4), sRGB codes, row 0 at v = 1: whole numbers from 0 to
-255, or fractions from 0 to 1, which are kept as floats. Colours are taken as they are, whatever the fourth channel
-(alpha) says. normal_map: directions in tangent space, in the same way but linear; normal_scale: of their x and y.
-shininess_texture (its green channel) and transmission_texture (red): what those are multiplied by, linear. name: to
-find it by in Scene.materials. opacity, times opacity_texture (its fourth channel, or the mean of fewer, linear):
-share of the surface that is there; through the rest light goes as if there were nothing, shadows included. With an
-opacity_cutoff above 0 there is all of it where that product reaches the cutoff, and nothing elsewhere.
-double_sided: emission leaves on both sides. shadow_catcher: invisible, but what is seen through it is as much
-darker as the lights are hidden from it (MTL's illumination model 10); light and shadows go through; it counts as a
-bounce. Raises InputError.)");
+                         R"(Creates a Phong material as in Wavefront's MTL files. Colours are linear (r, g, b).
+diffuse, specular: reflectance of the Lambert lobe and of the Phong lobe. shininess: Phong exponent.
+mirror: specular reflectance at normal incidence.
+fresnel: True: mirror increases towards grazing incidence (Schlick), and a dielectric interface reflects by its index.
+transmission: fraction of the surface, 0 to 1, that is a smooth dielectric interface to a medium inside of index ior.
+  filter: factor on the light that passes the interface. absorption: coefficient inside, per metre. thin: True for a
+  thin film, behind which light continues in its direction.
+emission: radiance in cd/m^2, on the side from which a triangle's vertices appear counterclockwise. double_sided: True:
+  on both sides.
+texture, specular_texture, emission_texture: factors on diffuse, specular and emission, as arrays (H, W) grey,
+  (H, W, 3) or (H, W, 4), row 0 at v = 1, in sRGB: integers 0 to 255, or floats 0 to 1, which are stored as floats. The
+  fourth channel (alpha) does not change the colours.
+normal_map: normals in tangent space, linear, in the same formats. normal_scale: factor on their x and y.
+shininess_texture (green channel), transmission_texture (red channel): factors on shininess and transmission, linear.
+opacity: fraction of light that the surface intercepts, 0 to 1; the rest, also of shadow rays, passes straight on.
+  opacity_texture: factor on it, linear: the fourth channel, or the mean of fewer channels. opacity_cutoff: above 0, the
+  surface is opaque where that product reaches the cutoff, and absent elsewhere.
+shadow_catcher: True: the surface is invisible, but darkens what is behind it by the fraction of the lights that is
+  occluded there (MTL's illumination model 10). Light passes it; it counts as a bounce.
+name: name in Scene.materials. Raises InputError.)");
         },
-        std::tuple_cat(phong, also_phong, both));
+        std::tuple_cat(phong, phong_arguments, both));
     initial.values.model = MaterialModel::metallic_roughness;
     initial.values.diffuse = initial.values.specular = {1, 1, 1};
     std::apply(
@@ -276,24 +299,28 @@ bounce. Raises InputError.)");
             material.def_static(
                 "metallic_roughness", maker(initial, fields...), py::kw_only(),
                 (py::arg(fields.name) = value(initial, fields.member))...,
-                R"(glTF's material: GGX microfacets of alpha = roughness^2 on a metal, on a dielectric over a diffuse
-base, or, for the share transmission of it, on a border that lets light through; all between 0 and 1. base_color,
-times texture: the metal's reflectance, the diffuse one, or the tint of what passes. ior: of the dielectric;
-specular_color, specular_weight: what its reflection is multiplied by. metallic_roughness_texture: roughness in
-green and metallic in blue, linear, times the numbers. clearcoat: share of a second, colourless layer of index 1.5
-above all, which has the mesh's normals, or those of clearcoat_normal_map. specular_texture: colours that
-specular_color is multiplied by; linear, and of one channel: specular_weight_texture (the fourth, or the mean of
-fewer), clearcoat_texture and transmission_texture (red), clearcoat_roughness_texture (green). absorption, thin,
-emission, opacity and the other textures as in Material(). Raises InputError.)");
+                R"(Creates a metallic-roughness material as in glTF: GGX microfacets with alpha = roughness^2.
+metallic: 0 for a dielectric on a diffuse base, to 1 for a metal. roughness: 0 to 1. metallic_roughness_texture: factors
+  on them, linear: roughness in the green channel, metallic in the blue one.
+base_color, times texture: reflectance of the metal or of the diffuse base, or tint of the transmitted light.
+transmission: fraction of the dielectric, 0 to 1, that transmits light instead of having a diffuse base.
+ior: index of refraction of the dielectric. specular_color, times specular_texture, and specular_weight, times
+  specular_weight_texture (fourth channel, or mean of fewer channels): factors on its reflection.
+clearcoat: fraction of the surface, 0 to 1, with a colourless coat of index 1.5 on top, which has the mesh's normals or
+  those of clearcoat_normal_map; clearcoat_normal_scale: factor on x and y of that map. clearcoat_texture (red channel)
+  and clearcoat_roughness_texture (green channel): factors on clearcoat and clearcoat_roughness.
+specular_weight_texture, clearcoat_texture, clearcoat_roughness_texture and transmission_texture (red channel) are
+linear. Formats of textures, and absorption, thin, emission, opacity and the other arguments: see Material().
+Raises InputError.)");
         },
-        std::tuple_cat(also_metallic_roughness, metallic_roughness, both));
+        std::tuple_cat(metallic_roughness_arguments, metallic_roughness, both));
     material
-        .def("replace", &with_numbers, py::kw_only(), "diffuse"_a = py::none(), "specular"_a = py::none(),
+        .def("replace", &with_changes, py::kw_only(), "diffuse"_a = py::none(), "specular"_a = py::none(),
              "shininess"_a = py::none(), "emission"_a = py::none(), "texture"_a = py::ellipsis(), "name"_a = py::none(),
              "metallic"_a = py::none(), "roughness"_a = py::none(), "transmission"_a = py::none(), "ior"_a = py::none(),
              "opacity"_a = py::none(),
-             R"(The material with some numbers changed. What is not given stays; texture=None takes the texture away;
-diffuse is the base colour of a metallic_roughness material, specular its specular_color.)")
+             R"(Returns the material with some properties changed; those that are omitted stay. texture=None removes the
+texture. diffuse is the base colour of a metallic_roughness material, specular its specular_color. Raises InputError.)")
         .def_property_readonly(
             "model",
             [](const PythonMaterial& p) {
@@ -307,14 +334,16 @@ void bind_scene_materials(py::class_<Assembly>& scene) {
     scene
         .def_property_readonly(
             "materials", &materials_of,
-            R"(A dict of static geometry's materials by their names, in their order: the file's names, "material 3"
-for one without a name, "wood.2" for the second "wood".)")
+            R"(Dict of the materials of the static geometry by name, in their order. Names are those of the file; a
+material without a name is "material 3", the second "wood" is "wood.2".)")
         .def("with_material", &with_material, "which"_a, "material"_a,
-             R"(With another material in place of one, by its name in materials or its number from 0; texture included.
-The place keeps its name. Raises InputError.)")
-        .def("with_texture", &with_texture, "material"_a, "pixels"_a,
-             R"(With a texture on a material, by its name or number; pixels as in Material(texture=...).
-Raises InputError, also where the vertices have no texture coordinates.)");
+             R"(Returns the scene with a material replaced, including its textures. which: its name in materials, or its
+index from 0. The new material takes over the name. Raises InputError.)")
+        .def(
+            "with_texture", &with_texture, "material"_a, "pixels"_a,
+            R"(Returns the scene with another texture on a material. material: its name in materials, or its index from
+0.
+pixels: as for Material(texture=...). Raises InputError, also if the vertices have no texture coordinates.)");
 }
 
 }  // namespace realcam::bindings

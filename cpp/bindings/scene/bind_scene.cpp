@@ -1,3 +1,6 @@
+// The Python class Scene: reading of files, lights and simple properties. Other files of this folder add materials,
+// instances and scenes from arrays.
+
 #include <pybind11/stl.h>
 
 #include <memory>
@@ -20,6 +23,7 @@ using namespace py::literals;
 
 namespace {
 
+/// Returns the normalised vector. Throws InputError if it is zero or not finite; `what`: its name, for the message.
 Vec3d unit_vector(const char* what, const Triple& direction) {
     const Vec3d d = vector_of(direction);
     const double size = length(d);
@@ -33,6 +37,7 @@ Assembly load(const PathLike& path, double scale, const std::vector<std::string>
     return io::read_scene(name, {scale, objects, heed_signals}, picture_readers().texture);
 }
 
+/// Returns the scene after change(static geometry), a function of a Scene&. Throws InputError if the result is invalid.
 template <class Change>
 Assembly with_valid_static_geometry(const Assembly& scene, Change&& change) {
     const Assembly changed = with_static_geometry(scene, change);
@@ -40,12 +45,13 @@ Assembly with_valid_static_geometry(const Assembly& scene, Change&& change) {
     return changed;
 }
 
-/// `warnings` receives the picture reader's warnings.
+/// Converts the radiance of an environment; see Scene.with_environment. `layer`: of an OpenEXR file, "" for the main
+/// image. `warnings` receives the image reader's warnings. Throws InputError and ImageFileError.
 Environment environment_from(const py::object& radiance, const std::string& layer, std::vector<std::string>& warnings) {
     if (py::isinstance<py::str>(radiance) || py::hasattr(radiance, "__fspath__"))
         return picture_readers().environment(path_from(radiance), layer,
                                              [&](const std::string& warning) { warnings.push_back(warning); });
-    if (!layer.empty()) throw InputError("layer is one of an OpenEXR file, and the environment is no file");
+    if (!layer.empty()) throw InputError("layer requires that the environment is an OpenEXR file");
     Environment environment;
     if (py::isinstance<py::array>(radiance) && radiance.cast<py::array>().ndim() == 3) {
         const auto pixels = radiance.cast<InputArray<float>>();
@@ -119,44 +125,56 @@ std::string text_of(const Assembly& scene) {
 void bind_scene(py::module_& m) {
     py::class_<Assembly> scene_class(
         m, "Scene",
-        R"(Triangles, materials and lights, and instances of other scenes, any number of each;
-metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are
-those of static geometry; objects bring their own along.)");
+        R"(Scene of triangles, materials, lights and instances of other scenes. Metres, right-handed, y up. Immutable:
+every change returns a new Scene. Its materials and warnings are those of the static geometry; instanced objects have
+their own.)");
     def_value(scene_class);
     scene_class
-        .def_static(
-            "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
-            R"(Reads .obj (with its .mtl), .gltf, .glb or .ply. scale: metres per unit of the file; objects: names
-of nodes (of an OBJ: what follows "o" or "g") that become instances, each with all below it, to be moved
-by their names; of several nodes "car" the second is "car.2". Only regular files are read.
-Raises SceneFileError, and KeyboardInterrupt on Ctrl-C. What could be put up with is in warnings.)")
+        .def_static("load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
+                    R"(Reads a scene file: .obj (with its .mtl), .gltf, .glb or .ply.
+scale: metres per unit of the file.
+objects: names of nodes (in an OBJ file: of "o" or "g" statements) that become instances, with all their descendants,
+  so that moved() can move them. The second of several nodes "car" is called "car.2".
+Minor faults of the file are listed in warnings. Only regular files are read. Raises SceneFileError, and
+KeyboardInterrupt on Ctrl-C.)")
         .def("with_environment", &with_environment, "radiance"_a, py::kw_only(), "scale"_a = 1.0,
              "rotation_deg"_a = 0.0, "layer"_a = "",
-             R"(The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude
-image (row 0 up, its middle column towards -z), or the path of one (see realcam.read_environment; layer: of an
-OpenEXR file). Its light is
-multiplied by scale, and an image turned about the vertical by rotation_deg, counterclockwise as seen from above: at
-90 its middle column lies towards -x. Raises InputError and ImageFileError.)")
+             R"(Returns the scene with another environment light.
+radiance: a number or (r, g, b) in cd/m^2, a latitude-longitude image (H, W, 3) (row 0 at the top, its central column
+  towards -z), or the path of one (see realcam.read_environment).
+scale: factor on the radiance.
+rotation_deg: rotation of an image about the vertical, counterclockwise as seen from above; at 90 its central column
+  lies towards -x.
+layer: layer of an OpenEXR file; "": the main image. Raises InputError and ImageFileError.)")
         .def("with_sun", &with_sun, "direction"_a, "illuminance"_a,
-             "With parallel light that travels along direction; illuminance (r, g, b) in lux.")
-        .def("with_point_light", &with_point_light, "position_m"_a, "intensity"_a,
-             "With a point light; intensity (r, g, b) in cd.")
+             R"(Returns the scene with an additional sun: parallel light that travels along direction, (x, y, z).
+illuminance: (r, g, b) in lux, on a surface perpendicular to the light. Raises InputError.)")
+        .def(
+            "with_point_light", &with_point_light, "position_m"_a, "intensity"_a,
+            R"(Returns the scene with an additional point light. position_m: (x, y, z); intensity: (r, g, b) in cd.
+Raises InputError.)")
         .def("with_spot_light", &with_spot_light, "position_m"_a, "direction"_a, "intensity"_a, py::kw_only(),
              "inner_cone_deg"_a = 0.0, "outer_cone_deg"_a = 45.0,
-             R"(With a spot: a point light of that intensity (r, g, b), in cd, along direction, which fades from the
-inner cone to nothing at the outer one (KHR_lights_punctual); the cones' angles are from the axis. Raises
-InputError.)")
-        .def_property_readonly("triangle_count", &Assembly::triangle_count, "Of static geometry and all instances.")
-        .def_property_readonly("material_count", [](const Assembly& s) { return s.static_geometry->materials.size(); })
-        .def_property_readonly("has_light", &Assembly::has_light)
-        .def_property_readonly("bounds_m", &bounds, "Lowest and highest corner of the bounding box.")
+             R"(Returns the scene with an additional spot light, as in glTF's KHR_lights_punctual.
+position_m: (x, y, z). direction: (x, y, z), axis of the cone. intensity: (r, g, b) in cd, on the axis.
+inner_cone_deg, outer_cone_deg: angles from the axis; the intensity decreases from the inner cone to 0 at the outer one.
+Raises InputError.)")
+        .def_property_readonly("triangle_count", &Assembly::triangle_count,
+                               "Number of triangles of the static geometry and all instances.")
+        .def_property_readonly(
+            "material_count", [](const Assembly& s) { return s.static_geometry->materials.size(); },
+            "Number of materials of the static geometry.")
+        .def_property_readonly("has_light", &Assembly::has_light,
+                               "True if the scene has an emitter: a light, an emissive material or an environment.")
+        .def_property_readonly("bounds_m", &bounds,
+                               "Lowest and highest corner (x, y, z) of the bounding box, in metres.")
         .def_property_readonly(
             "warnings", [](const Assembly& s)->Typed<"list[str]", py::list> {
                 py::list texts;
                 for (const std::string& warning : s.static_geometry->warnings) texts.append(text_from(warning));
                 return texts;
             },
-            "What the reader put up with, such as a missing texture.")
+            "List of minor faults that the reader found, such as a missing texture.")
         .def("__repr__", [](const Assembly& s) { return text_of(s); });
     bind_scene_arrays(scene_class);
     bind_instances(scene_class);

@@ -16,7 +16,7 @@ shot::PictureReaders picture_readers() {
                 return image_io::read_environment(path, layer, warn, heed_signals);
             }};
 #else
-    const auto refuse = [] { throw ImageFileError("this build of realcam has no picture files"); };
+    const auto refuse = [] { throw ImageFileError("this build of realcam cannot read image files"); };
     return {[refuse](const std::string&, std::span<const std::uint8_t>) -> std::optional<io::DecodedImage> {
                 refuse();
                 return std::nullopt;

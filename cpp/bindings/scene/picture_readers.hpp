@@ -3,8 +3,8 @@
 
 namespace realcam::bindings {
 
-/// Returns the picture readers of realcam._pictures, which links OpenImageIO. The texture reader may be called without
-/// the GIL. They throw ImageFileError if this build of realcam lacks that module.
+/// Returns the readers of textures and environment maps, which use OpenImageIO's Python package. The texture reader may
+/// be called without the GIL. They throw ImageFileError if this build of realcam cannot read image files.
 shot::PictureReaders picture_readers();
 
 }  // namespace realcam::bindings

@@ -1,3 +1,5 @@
+// Scene.from_arrays.
+
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -16,6 +18,7 @@ using namespace py::literals;
 
 namespace {
 
+/// Throws InputError unless the array has the shape (N, columns). `what`: its name, for the message.
 void check_shape(const py::array& array, py::ssize_t columns, const char* what) {
     if (array.ndim() != 2 || array.shape(1) != columns)
         throw InputError(std::string(what) + " must be an array of shape (N, " + std::to_string(columns) + ")");
@@ -62,7 +65,7 @@ Assembly scene_from_arrays(const InputArray<double>& vertices, const ArrayLike& 
     }
     if (colors) {
         const bool has_alpha = colors->ndim() == 2 && colors->shape(1) == 4;
-        if (!has_alpha) check_shape(*colors, 3, "colors, but for their alpha,");
+        if (!has_alpha) check_shape(*colors, 3, "colors without alpha");
         const auto c = colors->unchecked<2>();
         for (py::ssize_t i = 0; i < c.shape(0); ++i)
             scene.colors.push_back({{c(i, 0), c(i, 1), c(i, 2)}, has_alpha ? c(i, 3) : 1.0f});
@@ -93,7 +96,7 @@ Assembly scene_from_arrays(const InputArray<double>& vertices, const ArrayLike& 
     }
     validate(scene, {}, false, checkpoint);
     const std::size_t dropped = drop_degenerate_triangles(scene);
-    if (scene.triangles.empty()) throw InputError("all of the scene's triangles are without area");
+    if (scene.triangles.empty()) throw InputError("all triangles of the scene have zero area");
     if (dropped > 0) scene.warnings.push_back(std::to_string(dropped) + " triangle(s) without area dropped");
     return scene;
 }
@@ -101,14 +104,18 @@ Assembly scene_from_arrays(const InputArray<double>& vertices, const ArrayLike& 
 }  // namespace
 
 void bind_scene_arrays(py::class_<Assembly>& scene) {
-    scene.def_static(
-        "from_arrays", &scene_from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
-        "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<PythonMaterial>{},
-        "colors"_a = py::none(),
-        R"(vertices_m: (V, 3) float; triangles: (T, 3) int; normals: (V, 3) unit, zero for flat; uvs: (V, 2);
-triangle_materials: (T,) indices into materials; colors: (V, 3) or (V, 4), linear Rec. 709, by which the
-materials' diffuse or base colours, and a fourth number by which their opacity is multiplied.
-Raises InputError or SceneFileError.)");
+    scene.def_static("from_arrays", &scene_from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(),
+                     "normals"_a = py::none(), "uvs"_a = py::none(), "triangle_materials"_a = py::none(),
+                     "materials"_a = std::vector<PythonMaterial>{}, "colors"_a = py::none(),
+                     R"(Creates a scene from a triangle mesh.
+vertices_m: (V, 3) positions, in metres. triangles: (T, 3) indices of vertices, from 0; counterclockwise as seen from
+  the front.
+normals: (V, 3) unit shading normals; zero vectors for flat shading. uvs: (V, 2) texture coordinates.
+triangle_materials: (T,) indices into materials, from 0; None: all triangles have the first material. materials: list of
+  Materials; empty: one default material.
+colors: (V, 3) or (V, 4) vertex colours, linear Rec. 709: factors on the materials' diffuse or base colours, the fourth
+  on their opacity.
+Triangles of zero area are dropped, with a warning in Scene.warnings. Raises InputError and SceneFileError.)");
 }
 
 }  // namespace realcam::bindings

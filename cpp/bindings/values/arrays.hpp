@@ -14,7 +14,9 @@
 
 namespace realcam::bindings {
 
-/// Point or colour as passed from Python.
+// Conversions between numpy arrays and tuples and the vectors and colours of the core.
+
+/// Point or vector (x, y, z), and linear RGB colour, as passed from Python.
 using Triple = std::array<double, 3>;
 using Colour = std::array<float, 3>;
 
@@ -34,14 +36,14 @@ inline Color rgb(const Colour& c) {
 template <class T>
 using InputArray = pybind11::array_t<T, pybind11::array::c_style | pybind11::array::forcecast>;
 
-/// Returns an array that owns `values` (in C order) and shares their memory. Taken by value: the caller chooses between
-/// move and copy.
+/// Returns an array that owns `values` (in C order) and uses their memory. `values` is a std::vector or similar, taken
+/// by value: the caller chooses between move and copy.
 template <class Numbers>
 auto array_from(Numbers values, std::vector<pybind11::ssize_t> shape) {
-    auto kept = std::make_unique<Numbers>(std::move(values));
-    auto* const data = kept->data();
-    const pybind11::capsule owner(kept.get(), [](void* numbers) { delete static_cast<Numbers*>(numbers); });
-    kept.release();
+    auto owned = std::make_unique<Numbers>(std::move(values));
+    auto* const data = owned->data();
+    const pybind11::capsule owner(owned.get(), [](void* numbers) { delete static_cast<Numbers*>(numbers); });
+    owned.release();
     return pybind11::array_t<std::remove_pointer_t<decltype(data)>>(std::move(shape), data, owner);
 }
 

@@ -1,3 +1,5 @@
+// The Python class DeviceArray, an array in a GPU's memory.
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -40,7 +42,7 @@ Typed<"NDArray[Any]", py::array> numpy_of(const SharedDeviceArray& array) {
 Typed<"NDArray[Any]"> host_copy_of(const SharedDeviceArray& array, const Typed<"DTypeLike | None">& dtype,
                                    const Typed<"bool | None">& copy) {
     if (!copy.is_none() && !copy.cast<bool>())
-        throw py::value_error("a DeviceArray becomes a numpy array only as a copy; copy=False is out of reach");
+        throw py::value_error("a DeviceArray can be converted to a numpy array only by a copy; copy must not be False");
     const py::array numbers = numpy_of(array);
     return dtype.is_none() ? py::object(numbers) : numbers.attr("astype")(dtype, "copy"_a = false);
 }
@@ -61,23 +63,24 @@ std::string repr_of(const SharedDeviceArray& array) {
 void bind_device_array(py::module_& m) {
     py::class_<SharedDeviceArray>(
         m, "DeviceArray",
-        R"(Numbers in a GPU's memory, in C order. torch.from_dlpack, cupy.from_dlpack, torch.as_tensor and cupy.asarray
-share that memory without a copy, on any stream; numpy.asarray copies it to the host. It is freed with the
-last of those who share it.)")
-        .def_property_readonly("shape", &shape_of)
+        R"(Array in a GPU's memory, in C order. torch.from_dlpack, cupy.from_dlpack, torch.as_tensor and cupy.asarray
+share its memory without a copy, on any stream; numpy.asarray copies it to the host. The memory is freed when the
+last array that shares it is deleted.)")
+        .def_property_readonly("shape", &shape_of, "Length of each dimension.")
         .def_property_readonly("dtype", &dtype_of, "numpy.dtype: float64, float32, int32 or uint8.")
-        .def_property_readonly("device", &device_of, "As in `device` of Lens.trace: \"cuda:0\".")
-        .def("numpy", &numpy_of, "A copy in the host's memory. Raises DeviceError.")
+        .def_property_readonly("device", &device_of, "Name of the GPU, as `device` of Lens.trace: \"cuda:0\".")
+        .def("numpy", &numpy_of, "Returns a copy in the host's memory. Raises DeviceError.")
         .def("__array__", &host_copy_of, "dtype"_a = py::none(), py::kw_only(), "copy"_a = py::none(),
-             "For numpy.asarray. Raises ValueError for copy=False, and DeviceError.")
+             "Returns a copy in the host's memory, for numpy.asarray. Raises ValueError for copy=False, and "
+             "DeviceError.")
         .def("__len__",
              [](const SharedDeviceArray& array) { return array.shape().empty() ? 0 : array.shape().front(); })
         .def("__repr__", &repr_of)
         .def("__reduce__",
              [](const SharedDeviceArray&) -> py::tuple {
-                 throw py::type_error("a DeviceArray lies in a GPU's memory; pickle what its numpy() returns");
+                 throw py::type_error("a DeviceArray cannot be pickled; pickle the result of its numpy() instead");
              })
-        .def_property_readonly("__cuda_array_interface__", &interface_of, "Version 3.")
+        .def_property_readonly("__cuda_array_interface__", &interface_of, "Numba's CUDA array interface, version 3.")
         .def(
             "__dlpack__",
             [](const SharedDeviceArray& array, const Typed<"int | None">&,
@@ -85,8 +88,9 @@ last of those who share it.)")
                const Typed<"bool | None">& copy) { return dlpack_capsule(array, max_version, dl_device, copy); },
             py::kw_only(), "stream"_a = py::none(), "max_version"_a = py::none(), "dl_device"_a = py::none(),
             "copy"_a = py::none(),
-            R"(As the Python array API standard has it; the numbers are complete, so that any stream may read them.
-Raises BufferError for a device other than its own and the host, and for the host with copy=False.)")
+            R"(Returns a DLPack capsule, as the Python array API standard defines it. All writes have completed, so that
+any stream may read the array. Raises BufferError for a device other than the array's own GPU and the host, and
+for the host with copy=False.)")
         .def("__dlpack_device__", [](const SharedDeviceArray& array) {
             return py::make_tuple(static_cast<int>(dlpack::kCuda), array.ordinal());
         });

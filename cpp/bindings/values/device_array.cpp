@@ -78,20 +78,21 @@ std::shared_ptr<void> host_copy(const SharedDeviceArray& array) {
 
 py::capsule dlpack_capsule(const SharedDeviceArray& array, const py::object& max_version, const py::object& dl_device,
                            const py::object& copy) {
-    const auto asked = dl_device.is_none() ? std::pair<int, int>(dlpack::kCuda, array.ordinal())
-                                           : dl_device.cast<std::pair<int, int>>();
-    const bool to_host = asked.first == dlpack::kCpu;
-    if (!to_host && asked != std::pair<int, int>(dlpack::kCuda, array.ordinal()))
-        throw py::buffer_error("a DeviceArray goes to its own GPU or to the host, and to no other device");
-    const bool must_copy = !copy.is_none() && copy.cast<bool>(), must_not = !copy.is_none() && !must_copy;
-    if (to_host && must_not) throw py::buffer_error("a DeviceArray reaches the host only as a copy");
+    const std::pair<int, int> own_device(dlpack::kCuda, array.ordinal());
+    const auto requested = dl_device.is_none() ? own_device : dl_device.cast<std::pair<int, int>>();
+    const bool to_host = requested.first == dlpack::kCpu;
+    if (!to_host && requested != own_device)
+        throw py::buffer_error("a DeviceArray can be exported only to its own GPU or to the host");
+    const bool must_copy = !copy.is_none() && copy.cast<bool>(), must_not_copy = !copy.is_none() && !must_copy;
+    if (to_host && must_not_copy)
+        throw py::buffer_error("a DeviceArray can be exported to the host only as a copy; copy must not be False");
 
     std::shared_ptr<void> memory = array.memory();
     if (to_host)
         memory = host_copy(array);
     else if (must_copy)
         memory = array.duplicate().memory();
-    const dlpack::Device device{asked.first, to_host ? 0 : array.ordinal()};
+    const dlpack::Device device{requested.first, to_host ? 0 : array.ordinal()};
     if (max_version.is_none() || max_version.cast<py::tuple>()[0].cast<int>() < 1)
         return capsule_of(
             std::make_unique<Exported<dlpack::ManagedTensor>>(std::move(memory), device, array.type(), array.shape()),
@@ -107,6 +108,7 @@ namespace py = pybind11;
 
 namespace {
 
+/// Description of a foreign GPU array.
 struct Layout {
     std::vector<std::int64_t> shape;
     std::optional<std::vector<std::int64_t>> strides;  ///< in bytes; std::nullopt: C order
@@ -127,11 +129,11 @@ std::int64_t count_of(const Layout& layout, const std::string& name) {
         const std::vector<std::int64_t>& strides = *layout.strides;
         if (strides.size() != 2 || strides[1] != size || (count > 1 && strides[0] != 3 * size))
             throw InputError(name +
-                             " lies on a GPU, and its numbers are not in C order without gaps; give a contiguous copy "
+                             " lies on a GPU and is not contiguous in C order; pass a contiguous copy "
                              "(.contiguous() of torch, cupy.ascontiguousarray)");
     }
     if (layout.address % size_of(layout.type) != 0)
-        throw InputError(name + " lies on a GPU at an address that is no multiple of its numbers' size");
+        throw InputError(name + " lies on a GPU at an address that is no multiple of the size of its numbers");
     return count;
 }
 
@@ -146,27 +148,28 @@ NumberType type_of_text(const std::string& type, const std::string& name) {
     refuse_type(name, "\"" + type + "\"");
 }
 
-bool given(const py::dict& interface, const char* key) {
+bool is_set(const py::dict& interface, const char* key) {
     return interface.contains(key) && !interface[key].is_none();
 }
 
-/// Without a stream, version 3 and later of the interface guarantee that no work is pending; earlier versions guarantee
-/// nothing.
+/// Work that must complete before an array may be read.
 struct Readiness {
-    bool wait;
-    std::optional<std::uintptr_t> stream;
+    bool wait;  ///< false: no work is pending
+    std::optional<std::uintptr_t> stream;  ///< the stream to wait for; std::nullopt: all work of the GPU
 };
 
+/// Without a stream, version 3 and later of the interface guarantee that no work is pending; earlier versions guarantee
+/// nothing.
 Readiness readiness_of(const py::dict& interface) {
-    if (!given(interface, "version") || interface["version"].cast<int>() < 3) return {true, std::nullopt};
-    if (!given(interface, "stream")) return {false, std::nullopt};
+    if (!is_set(interface, "version") || interface["version"].cast<int>() < 3) return {true, std::nullopt};
+    if (!is_set(interface, "stream")) return {false, std::nullopt};
     return {true, interface["stream"].cast<std::uintptr_t>()};
 }
 
 std::pair<Layout, Readiness> read_interface(const py::dict& interface, const std::string& name) {
     try {
         const Layout layout{interface["shape"].cast<std::vector<std::int64_t>>(),
-                            given(interface, "strides")
+                            is_set(interface, "strides")
                                 ? std::optional(interface["strides"].cast<std::vector<std::int64_t>>())
                                 : std::nullopt,
                             type_of_text(interface["typestr"].cast<std::string>(), name),
@@ -179,14 +182,14 @@ std::pair<Layout, Readiness> read_interface(const py::dict& interface, const std
     }
 }
 
-/// https://numba.readthedocs.io/en/stable/cuda/cuda_array_interface.html
+/// Reads a CUDA array interface (https://numba.readthedocs.io/en/stable/cuda/cuda_array_interface.html).
 DeviceInput from_interface(const py::object& array, const py::dict& interface, const std::string& name) {
-    if (given(interface, "mask")) throw InputError(name + " has a mask; expected an array without one");
+    if (is_set(interface, "mask")) throw InputError(name + " has a mask; expected an array without one");
     const auto [layout, ready] = read_interface(interface, name);
     DeviceInput input = input_of(layout, -1, name, array);
     if (input.count == 0) return input;
     const std::optional<int> ordinal = gpu_of_address(input.numbers.data);
-    if (!ordinal) throw InputError(name + " says that it lies on a GPU, and its address is in no GPU's memory");
+    if (!ordinal) throw InputError(name + " claims to lie on a GPU, but its address is in no GPU's memory");
     input.numbers.ordinal = *ordinal;
     const Unlocked unlocked;
     if (ready.wait) wait_for_gpu(*ordinal, ready.stream);
@@ -213,7 +216,7 @@ Layout layout_of(const dlpack::Tensor& tensor, const std::string& name) {
     return layout;
 }
 
-/// Reads the capsule without consuming it, so that the capsule frees the memory.
+/// Reads a DLPack capsule without consuming it, so that the capsule frees the memory.
 DeviceInput from_dlpack(const py::object& array, int ordinal, const std::string& name) {
     using namespace py::literals;
     py::object capsule;
@@ -235,7 +238,7 @@ DeviceInput from_dlpack(const py::object& array, int ordinal, const std::string&
     } else if (PyCapsule_IsValid(capsule.ptr(), dlpack::kName)) {
         tensor = &static_cast<const dlpack::ManagedTensor*>(PyCapsule_GetPointer(capsule.ptr(), dlpack::kName))->tensor;
     }
-    if (!tensor) throw InputError(name + " lies on a GPU, and its __dlpack__ gives no capsule of version 0 or 1");
+    if (!tensor) throw InputError(name + " lies on a GPU, and its __dlpack__ returned no capsule of version 0 or 1");
     DeviceInput input = input_of(layout_of(*tensor, name), ordinal, name, capsule);
     const Unlocked unlocked;
     wait_for_gpu(ordinal, std::nullopt);

@@ -63,8 +63,8 @@ inline constexpr const char* kVersionedName = "dltensor_versioned";
 
 namespace realcam::bindings {
 
-/// Returns a DLPack capsule of the array: `__dlpack__` of the Python array API standard, except for its `stream`
-/// argument.
+/// Returns a DLPack capsule of the array. Arguments as those of `__dlpack__` in the Python array API standard, without
+/// `stream`. Throws BufferError if the array cannot be exported to that device, or not without a copy.
 pybind11::capsule dlpack_capsule(const SharedDeviceArray& array, const pybind11::object& max_version,
                                  const pybind11::object& dl_device, const pybind11::object& copy);
 
@@ -75,8 +75,9 @@ struct DeviceInput {
     pybind11::object owner;  ///< keeps the memory alive
 };
 
-/// Reads a GPU array through `__cuda_array_interface__` or `__dlpack__` and waits until its contents are complete;
-/// std::nullopt if it is in host memory. `name`: name of the argument, for errors. Throws InputError and DeviceError.
+/// Reads a GPU array through `__cuda_array_interface__` or `__dlpack__` and waits until all writes to it have
+/// completed. Returns std::nullopt if it is in host memory. `name`: name of the argument, for errors. Throws InputError
+/// and DeviceError.
 std::optional<DeviceInput> device_input(const pybind11::object& array, const char* name);
 
 }  // namespace realcam::bindings

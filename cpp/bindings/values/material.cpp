@@ -10,7 +10,8 @@ namespace realcam::bindings {
 
 namespace {
 
-std::int32_t index_of(std::vector<Texture>& textures, const Texture& texture) {
+/// Returns the index of a texture in the list, to which it is appended if the list does not contain it.
+std::int32_t find_or_append(std::vector<Texture>& textures, const Texture& texture) {
     for (std::size_t i = 0; i < textures.size(); ++i)
         if (equal(textures[i], texture)) return static_cast<std::int32_t>(i);
     textures.push_back(texture);
@@ -23,35 +24,38 @@ void drop_unused_textures(Scene& scene) {
     scene.textures.clear();
     for (Material& material : scene.materials)
         for (const auto member : kMaterialTextures) {
-            std::int32_t& number = (material.*member).texture;
-            if (number < 0) continue;
-            const auto from = static_cast<std::size_t>(number);
+            std::int32_t& index = (material.*member).texture;
+            if (index < 0) continue;
+            const auto from = static_cast<std::size_t>(index);
             if (indices[from] < 0) {
                 indices[from] = static_cast<std::int32_t>(scene.textures.size());
                 scene.textures.push_back(std::move(all[from]));
             }
-            number = indices[from];
+            index = indices[from];
         }
 }
 
+/// Returns true for floats, whose range is 0 to 1, and false for integers, whose range is 0 to 255. Throws InputError
+/// for other types.
 bool holds_fractions(const py::array& pixels) {
     const char kind = pixels.dtype().kind();
     if (kind != 'i' && kind != 'u' && kind != 'f')
-        throw InputError("a texture must hold numbers: whole ones from 0 to 255, or fractions from 0 to 1");
+        throw InputError("a texture must hold integers from 0 to 255 or floats from 0 to 1");
     return kind == 'f';
 }
 
 void check_range(const py::array& pixels) {
     const bool are_fractions = holds_fractions(pixels);
-    const double least = pixels.attr("min")().cast<double>(), most = pixels.attr("max")().cast<double>();
-    if (least >= 0 && most <= (are_fractions ? 1 : 255)) return;
+    const double minimum = pixels.attr("min")().cast<double>(), maximum = pixels.attr("max")().cast<double>();
+    if (minimum >= 0 && maximum <= (are_fractions ? 1 : 255)) return;
     const auto text = [](double v) { return py::repr(py::float_(v)).cast<std::string>(); };
-    throw InputError("the texture's numbers lie between " + text(least) + " and " + text(most) +
-                     (are_fractions ? "; expected fractions from 0 (black) to 1 (white)"
-                                    : "; expected whole numbers from 0 to 255"));
+    throw InputError(
+        "the texture's numbers lie between " + text(minimum) + " and " + text(maximum) +
+        (are_fractions ? "; expected floats from 0 (black) to 1 (white)" : "; expected integers from 0 to 255"));
 }
 
-/// Appends some rows of an array (H, W, C) as red, green, blue and alpha, each converted by `decode(value, channel)`.
+/// Appends rows of an array of shape (H, W) or (H, W, C) to `rgba` as red, green, blue and alpha. Colours are converted
+/// by `decode(value)`, alpha is not; `white` is the alpha of textures without one.
 template <class Value, class Decode>
 void append_rgba(std::vector<Value>& rgba, const py::array& band, py::ssize_t channels, Value white, io::TextureUse use,
                  Decode&& decode) {
@@ -71,11 +75,11 @@ PythonMaterial material_of(const std::shared_ptr<const Scene>& scene, std::size_
     PythonMaterial material{
         index < scene->material_names.size() ? scene->material_names[index] : "", scene->materials[index], {}};
     for (std::size_t i = 0; i < kMaterialTextures.size(); ++i) {
-        std::int32_t& number = (material.values.*kMaterialTextures[i]).texture;
-        if (number >= 0)
+        std::int32_t& texture = (material.values.*kMaterialTextures[i]).texture;
+        if (texture >= 0)
             material.textures[i] =
-                std::shared_ptr<const Texture>(scene, &scene->textures[static_cast<std::size_t>(number)]);
-        number = -1;
+                std::shared_ptr<const Texture>(scene, &scene->textures[static_cast<std::size_t>(texture)]);
+        texture = -1;
     }
     return material;
 }
@@ -87,7 +91,8 @@ void set_material(Scene& scene, std::size_t index, const PythonMaterial& materia
     scene.materials[index] = material.values;
     for (std::size_t i = 0; i < kMaterialTextures.size(); ++i)
         if (material.textures[i])
-            (scene.materials[index].*kMaterialTextures[i]).texture = index_of(scene.textures, *material.textures[i]);
+            (scene.materials[index].*kMaterialTextures[i]).texture =
+                find_or_append(scene.textures, *material.textures[i]);
     drop_unused_textures(scene);
 }
 
@@ -119,7 +124,7 @@ std::shared_ptr<const Texture> texture_from(const py::object& object, io::Textur
         texture->linear_rgba.reserve(count);
     else
         texture->rgba.reserve(count);
-    // Converts some rows at a time, to limit memory and to check for Ctrl-C in between.
+    // Converts bands of about a million numbers, to limit memory and to check for Ctrl-C in between.
     const py::ssize_t rows = std::max<py::ssize_t>(1, (py::ssize_t{1} << 20) / (channels * pixels.shape(1)));
     for (py::ssize_t row = 0; row < pixels.shape(0); row += rows) {
         heed_signals();

@@ -14,17 +14,20 @@ namespace realcam::bindings {
 struct PythonMaterial {
     std::string name;  ///< empty: the material has no name
     Material values;  ///< texture indices are unset
-    /// In the order of kMaterialTextures; null: no texture.
+    /// Textures in the order of kMaterialTextures; null: no texture.
     std::array<std::shared_ptr<const Texture>, kMaterialTextures.size()> textures;
 };
 
+/// Returns a copy of a scene's material. Its textures are shared with the scene, which they keep alive.
 PythonMaterial material_of(const std::shared_ptr<const Scene>& scene, std::size_t index);
 
-/// Replaces the material at an index, or appends it. A replaced material's name is kept, if it has one.
+/// Replaces the material at an index, or appends it. A replaced material keeps its name if it has one. Removes textures
+/// that are no longer used.
 void set_material(Scene& scene, std::size_t index, const PythonMaterial& material);
 
-/// Converts pixels: (H, W) or (H, W, 1) grey, (H, W, 3) or (H, W, 4), as codes 0 to 255 or fractions 0 to 1. An opacity
-/// texture without a fourth channel uses the mean of its channels. Throws InputError for any other array.
+/// Converts pixels to a texture: (H, W) or (H, W, 1) grey, (H, W, 3) RGB or (H, W, 4) RGBA, as integers 0 to 255 or
+/// floats 0 to 1. An opacity texture without a fourth channel uses the mean of its channels. Throws InputError for any
+/// other array.
 std::shared_ptr<const Texture> texture_from(const py::object& pixels, io::TextureUse use);
 
 }  // namespace realcam::bindings

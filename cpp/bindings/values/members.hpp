@@ -8,6 +8,8 @@
 
 namespace realcam::bindings {
 
+// Access to all members of a struct as a tuple, for comparisons and pickles.
+
 namespace members_detail {
 
 /// Converts to any type, for counting an aggregate's members.
@@ -27,12 +29,13 @@ consteval std::size_t count() {
 
 }  // namespace members_detail
 
-/// Returns references to all members of an aggregate, in order. Found by the compiler, so that members added later take
-/// part in comparisons and pickles.
+/// Returns a tuple of references to all members of an aggregate, in order. Structured bindings find the members, so
+/// that members added later take part in comparisons and pickles.
 template <class T>
 auto members(T& x) {
     constexpr std::size_t n = members_detail::count<std::remove_const_t<T>>();
-    static_assert(std::is_aggregate_v<std::remove_const_t<T>> && n >= 1 && n <= 16, "add a line for so many members");
+    static_assert(std::is_aggregate_v<std::remove_const_t<T>> && n >= 1 && n <= 16,
+                  "add a branch for this number of members");
     if constexpr (n == 1) {
         auto& [a] = x;
         return std::tie(a);
@@ -87,8 +90,8 @@ auto members(T& x) {
 namespace members_detail {
 
 template <class M>
-auto of_material(M& m) {
-    static_assert(count<Material>() == 36, "name what was added");
+auto material_members(M& m) {
+    static_assert(count<Material>() == 36, "add the new member of Material to the list below");
     return std::tie(m.model, m.diffuse, m.specular, m.emission, m.emits_on_both_sides, m.opacity, m.opacity_cutoff,
                     m.only_shadows, m.vertex_opacity, m.vertex_emission, m.opacity_texture, m.diffuse_texture,
                     m.specular_texture, m.emission_texture, m.ior, m.transmission, m.filter, m.absorption, m.is_thin,
@@ -101,10 +104,10 @@ auto of_material(M& m) {
 }  // namespace members_detail
 
 inline auto members(const Material& m) {
-    return members_detail::of_material(m);
+    return members_detail::material_members(m);
 }
 inline auto members(Material& m) {
-    return members_detail::of_material(m);
+    return members_detail::material_members(m);
 }
 inline auto members(const Triangle& t) {
     return std::tie(t.vertices[0], t.vertices[1], t.vertices[2], t.material);

@@ -43,8 +43,9 @@ struct LastIs {
 template <class T>
 inline constexpr bool has_names_of_files = false;
 
-inline void require_restored(bool good) {
-    if (!good) throw InputError("it is damaged");
+/// Throws InputError if a condition on unpickled data does not hold.
+inline void require_restored(bool condition) {
+    if (!condition) throw InputError("it is damaged");
 }
 
 template <class E, class Number>
@@ -53,8 +54,8 @@ constexpr bool is_enumerator(Number number) {
     return number >= 0 && number <= static_cast<Plain>(LastEnumerator<E>::value);
 }
 
-/// Checks an item that was copied bytewise. The bytes of a bool or enumerator must be checked before the value is read:
-/// any other bit pattern would be undefined behaviour.
+/// Checks a value whose bytes were copied from a pickle. The bytes of a bool or enumerator must be checked before the
+/// value is read: any other bit pattern would be undefined behaviour.
 template <class T>
 void check_copied(const T& value) {
     using namespace value_compare_detail;
@@ -76,20 +77,20 @@ void check_copied(const T& value) {
 }
 
 /// Required type and shape of an array in a pickled result.
-struct WantedArray {
+struct ExpectedArray {
     char kind;  ///< numpy's kind character: f floats, c complex numbers, i integers
     std::vector<pybind11::ssize_t> shape;
 };
 
 /// Throws InputError if the object is not a numpy array or DeviceArray of that kind and shape.
-inline void check_restored_array(const pybind11::object& array, const WantedArray& wanted) {
+inline void check_restored_array(const pybind11::object& array, const ExpectedArray& expected) {
     namespace py = pybind11;
     require_restored(py::isinstance<py::array>(array) || py::isinstance<SharedDeviceArray>(array));
     const py::object type = array.attr("dtype");
-    require_restored(py::dtype::from_args(type).kind() == wanted.kind && type.attr("isnative").cast<bool>());
+    require_restored(py::dtype::from_args(type).kind() == expected.kind && type.attr("isnative").cast<bool>());
     const py::tuple shape = array.attr("shape");
-    require_restored(shape.size() == wanted.shape.size());
-    for (std::size_t i = 0; i < shape.size(); ++i) require_restored(shape[i].cast<py::ssize_t>() == wanted.shape[i]);
+    require_restored(shape.size() == expected.shape.size());
+    for (std::size_t i = 0; i < shape.size(); ++i) require_restored(shape[i].cast<py::ssize_t>() == expected.shape[i]);
 }
 
 /// Returns the length of the first dimension. Throws InputError if the object is not an array or has no dimension.

@@ -25,8 +25,8 @@ struct RestoredCheck<Vec3<T>> : AnyMembers {};
 template <class T>
 struct RestoredCheck<Affine<T>> : AnyMembers {};
 
-/// Parts that are checked together with the value that holds them: a glass by restored_glass, layers and metal by the
-/// coating, whose error names the layer, and a material by the scene.
+/// Parts that are checked together with the value that contains them: a glass's parts by restored_glass, layers and
+/// metal by the coating, whose error names the layer, and a material by the scene.
 template <OneOf<Color, Glass::TablePoint, Glass::Parts, CoatingMaterial::Point, CoatingMaterial, SurfacePlacement,
                 XyTerm, SurfaceForm, Obscuration, ApertureShape, IrisShape, FocusingRule, ZoomPosition, ZoomRange,
                 FirstOrder, Meridian, Pose, PoseKey, Shutter, QuantumEfficiency, SensorPoint, SensorConversion,
@@ -76,7 +76,7 @@ struct RestoredCheck<Coating> {
 };
 template <>
 struct LastEnumerator<BaseForm> : LastIs<BaseForm::toroid> {};
-/// Variants of terms, see kFormTerms.
+/// Enumerations of two variants of sag terms, such as the two orders of Zernike terms; see kFormTerms.
 template <class E>
     requires(is_form_variant<E>)
 struct LastEnumerator<E> : LastIs<E{1}> {};
@@ -90,7 +90,7 @@ template <>
 struct RestoredCheck<Surface> {
     /// Checks that do not depend on the lens.
     static void check(const Surface& surface) {
-        if (!std::isfinite(surface.curvature)) throw InputError("a radius of curvature of 0 is no surface");
+        if (!std::isfinite(surface.curvature)) throw InputError("a surface's radius of curvature must not be 0");
         if (surface.aspheric.size() > static_cast<std::size_t>(kMaxAsphericTerms))
             throw InputError("a surface has more aspheric coefficients than " + std::to_string(kMaxAsphericTerms));
         if (const std::string why = form_error(surface); !why.empty()) throw InputError("a surface " + why);
@@ -107,8 +107,8 @@ struct RestoredCheck<LensSystem> {
         if (const std::string why = film_distance_error(lens); !why.empty()) throw LensFileError(why);
         if (!(lens.stop_semi_diameter >= 0 && lens.stop_semi_diameter <= kLongest))
             throw LensFileError("the radius of the lens's open stop must be a length of 0 or more");
-        if (std::isnan(lens.focus_distance)) throw LensFileError("the focus distance is no number");
-        if (!(lens.focusing.nearest_mm >= 0)) throw LensFileError("the nearest focus must be 0 or a distance");
+        if (std::isnan(lens.focus_distance)) throw LensFileError("the focus distance must be a number");
+        if (!(lens.focusing.nearest_mm >= 0)) throw LensFileError("the nearest focus distance must be 0 or more");
     }
 };
 
@@ -150,10 +150,11 @@ struct RestoredCheck<Texture> {
         const std::size_t texels = static_cast<std::size_t>(std::max(texture.width, 0)) *
                                    static_cast<std::size_t>(std::max(texture.height, 0));
         const std::size_t numbers = texture.rgba.empty() ? texture.linear_rgba.size() : texture.rgba.size();
-        if (texels == 0 || numbers != 4 * texels) throw InputError("a texture is not of the size that it states");
+        if (texels == 0 || numbers != 4 * texels)
+            throw InputError("a texture's number of values must be 4 times its width times its height");
         for (const float number : texture.linear_rgba)
             if (!(number >= 0) || !std::isfinite(number))
-                throw InputError("a texture must hold finite numbers, none below 0");
+                throw InputError("a texture's values must be finite and not negative");
     }
 };
 template <>
@@ -179,17 +180,17 @@ struct RestoredCheck<Assembly> {
             const std::ptrdiff_t whole = scene.instances[i].part_of;
             if (whole < Instance::kNoWhole || whole >= static_cast<std::ptrdiff_t>(i))
                 throw InputError(label(scene, i) + " is a part of instance " + std::to_string(whole) +
-                                 "; expected one that comes before it");
+                                 "; expected an instance before it in the list");
         }
     }
 };
 template <>
 struct RestoredCheck<PythonMaterial> {
-    /// Values are checked together with the scene that receives the material.
+    /// Other values are checked together with the scene that receives the material.
     static void check(const PythonMaterial& material) {
         for (const auto member : kMaterialTextures)
             if ((material.values.*member).texture != -1)
-                throw InputError("a material without a scene has textures of one");
+                throw InputError("a material outside of a scene must not have texture indices");
     }
 };
 

@@ -8,7 +8,7 @@
 
 namespace realcam::bindings {
 
-// Texts for __repr__, which must fit on a line.
+// Formatting for __repr__, whose result must fit on a line.
 
 /// Formats a number with four significant digits, like %g.
 inline std::string digits(double value) {
@@ -22,6 +22,7 @@ inline std::string counted(std::size_t count, const std::string& what) {
     return std::to_string(count) + ' ' + what + (count == 1 ? "" : "s");
 }
 
+/// Formats a vector: "(1, 2.5, 3)".
 template <class Vec>
 std::string point_text(const Vec& v) {
     const auto number = [](auto x) { return digits(static_cast<double>(x)); };
@@ -32,16 +33,16 @@ inline std::string color_text(Color c) {
     return point_text(Vec3f{c.r, c.g, c.b});
 }
 
-/// Truncates a name to a single line of limited length.
+/// Truncates a name to a single line of at most 40 bytes.
 inline std::string shortened(std::string name) {
-    constexpr std::size_t kRoom = 40;
+    constexpr std::size_t kMaxBytes = 40;
     for (char& c : name)
         if (static_cast<unsigned char>(c) < ' ') c = ' ';
-    if (name.size() <= kRoom) return name;
-    return name.substr(0, io::utf8_begin(name, kRoom - 3)) + "...";
+    if (name.size() <= kMaxBytes) return name;
+    return name.substr(0, io::utf8_begin(name, kMaxBytes - 3)) + "...";
 }
 
-/// Formats a time: "1/125 s", "2 s".
+/// Formats an exposure time: "1/125 s", "2 s".
 inline std::string time_text(double seconds) {
     return seconds < 0.5 ? "1/" + digits(1 / seconds) + " s" : digits(seconds) + " s";
 }

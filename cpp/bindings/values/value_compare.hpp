@@ -76,8 +76,6 @@ bool equal(const T& a, const T& b) {
         return a.has_value() == b.has_value() && (!a || equal(*a, *b));
     else if constexpr (is_shared<T>)
         return a == b || (a && b && equal(*a, *b));
-    else if constexpr (is_optional<T>)
-        return a.has_value() == b.has_value() && (!a || equal(*a, *b));
     else
         return [&]<std::size_t... i>(std::index_sequence<i...>) {
             const auto x = members(a), y = members(b);

@@ -8,8 +8,8 @@
 
 namespace realcam::bindings {
 
-/// Defines pickling of a class. `state` returns the state of an object; `restored` makes an object from a state, which
-/// it checks.
+/// Defines pickling of a class. `state(self)` returns the pickle state of an object; `restored(state)` checks a state
+/// and makes an object from it.
 template <class T, class... Options, class State, class Restored>
 void def_pickle(pybind11::class_<T, Options...>& type, const State& state, const Restored& restored) {
     namespace py = pybind11;
@@ -38,7 +38,7 @@ void def_result(pybind11::class_<T, Options...>& type) {
         "other"_a);
     def_pickle(
         type, [](const py::object& self) { return StateWriter(self).write(self.cast<const T&>()); },
-        [](const py::object& state) { return StateReader().made<T>(state); });
+        [](const py::object& state) { return StateReader().read_value<T>(state); });
 }
 
 /// Defines copy and deepcopy of an immutable class, which return the object itself.

@@ -20,12 +20,13 @@ inline constexpr int kStateFormat = 1;
 template <class T>
 inline constexpr bool is_flat = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
 
-/// Writes one value. Objects that several parts share are written once.
+/// Converts one value to its pickle state. An object that several members share is written once.
 class StateWriter {
 public:
     /// `owner` keeps the value alive, so that large lists need not be copied; with a null object they are copied.
     explicit StateWriter(pybind11::object owner) : owner_(std::move(owner)) {}
 
+    /// Returns the state of a value.
     template <class T>
     pybind11::object write(const T& value) {
         using namespace value_compare_detail;
@@ -78,19 +79,20 @@ private:
     template <class T>
     pybind11::object write_shared(const std::shared_ptr<T>& pointer) {
         if (!pointer) return pybind11::none();
-        const auto [at, is_new] = written_.try_emplace(pointer.get(), written_.size());
-        if (!is_new) return pybind11::cast(at->second);
+        const auto [entry, is_new] = written_.try_emplace(pointer.get(), written_.size());
+        if (!is_new) return pybind11::cast(entry->second);
         return write(*pointer);
     }
 
     pybind11::object owner_;
-    std::map<const void*, std::size_t> written_;
+    std::map<const void*, std::size_t> written_;  ///< index of each shared object, in the order of writing
 };
 
 /// Reads the state written by StateWriter. Throws a realcam::Error for any other state, and pybind11's errors if a
 /// Python object has another type. Results satisfy the checks of the constructors (restored.hpp).
 class StateReader {
 public:
+    /// Reads a state into `value`.
     template <class T>
     void read(T& value, const pybind11::handle& state) {
         using namespace value_compare_detail;
@@ -103,7 +105,7 @@ public:
         else if constexpr (std::derived_from<T, pybind11::object>)
             read_object(value, state);
         else if constexpr (std::same_as<T, Glass>)
-            value = made<Glass>(state);
+            value = read_value<Glass>(state);
         else if constexpr (is_shared<T>)
             read_shared(value, state);
         else if constexpr (is_optional<T>)
@@ -114,10 +116,11 @@ public:
             read_members(value, state, std::make_index_sequence<std::tuple_size_v<decltype(members(value))>>());
     }
 
+    /// Returns the value of a state.
     template <class T>
-    T made(const pybind11::handle& state) {
+    T read_value(const pybind11::handle& state) {
         if constexpr (std::same_as<T, Glass>) {
-            return restored_glass(made<Glass::Parts>(state));
+            return restored_glass(read_value<Glass::Parts>(state));
         } else {
             T value{};
             read(value, state);
@@ -149,10 +152,10 @@ private:
     void read_members(T& value, const pybind11::handle& state, std::index_sequence<i...>) {
         const auto items = state.cast<pybind11::tuple>();
         require_restored(items.size() == sizeof...(i));
-        const auto to = members(value);
-        const bool outside = std::exchange(any_bytes_, any_bytes_ || has_names_of_files<T>);
-        (read(std::get<i>(to), items[i]), ...);
-        any_bytes_ = outside;
+        const auto targets = members(value);
+        const bool outer_any_bytes = std::exchange(any_bytes_, any_bytes_ || has_names_of_files<T>);
+        (read(std::get<i>(targets), items[i]), ...);
+        any_bytes_ = outer_any_bytes;
         RestoredCheck<T>::check(value);
     }
 
@@ -183,18 +186,18 @@ private:
     void read_shared(std::shared_ptr<T>& pointer, const pybind11::handle& state) {
         if (state.is_none()) return pointer.reset();
         if (pybind11::isinstance<pybind11::int_>(state)) {
-            const auto number = state.cast<std::size_t>();
+            const auto index = state.cast<std::size_t>();
             // Rejects references to values of another type and to values that contain this one, which StateWriter never
             // writes.
-            require_restored(number < read_.size() && read_[number].value && read_[number].type == typeid(T));
-            pointer = std::static_pointer_cast<T>(read_[number].value);
+            require_restored(index < read_.size() && read_[index].value && read_[index].type == typeid(T));
+            pointer = std::static_pointer_cast<T>(read_[index].value);
             return;
         }
-        const std::size_t number = read_.size();
+        const std::size_t index = read_.size();
         read_.push_back({nullptr, typeid(T)});
         auto value = std::make_shared<std::remove_const_t<T>>();
         read(*value, state);
-        read_[number].value = value;
+        read_[index].value = value;
         pointer = std::move(value);
     }
 
@@ -202,7 +205,7 @@ private:
         std::shared_ptr<const void> value;  ///< null while it is being read
         std::type_index type;
     };
-    std::vector<Shared> read_;
+    std::vector<Shared> read_;  ///< shared values, in the order of writing
     bool any_bytes_ = false;  ///< true if strings need not be UTF-8
 };
 

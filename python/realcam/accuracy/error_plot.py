@@ -13,8 +13,8 @@ from ..analysis import style
 from ..analysis.fields import Doubles
 from .measurements import Rung
 
-# Factor by which lines are extrapolated beyond the longest measured time.
-CONTINUED = 16.0
+# Ratio of the longest time to which the lines are extrapolated to the longest measured time.
+EXTRAPOLATION = 16.0
 
 
 def draw_errors(figure: SubFigure, rungs: tuple[Rung, ...]) -> None:
@@ -22,7 +22,7 @@ def draw_errors(figure: SubFigure, rungs: tuple[Rung, ...]) -> None:
     groups = list(dict.fromkeys(rung.group for rung in rungs))
     rows = 2 if len(groups) > 3 else 1
     grid = figure.subplots(rows, -(-len(groups) // rows), sharex=True, sharey=True, squeeze=False)
-    end = CONTINUED * max(rung.pictures[-1].seconds for rung in rungs)
+    end = EXTRAPOLATION * max(rung.pictures[-1].seconds for rung in rungs)
     for cell in grid.ravel()[len(groups) :]:
         cell.set_axis_off()
     plots = [
@@ -50,11 +50,14 @@ def draw_errors(figure: SubFigure, rungs: tuple[Rung, ...]) -> None:
 
 
 def recommendation(rungs: tuple[Rung, ...], reason: str) -> str:
-    """Text on the recommended level, with the reason and the errors of all groups; empty if it was not measured."""
+    """Returns a text on the recommended level, with the reason for it and the errors of all groups.
+
+    The text is empty if the level was not measured.
+    """
     best = next((rung for rung in rungs if rung.is_recommended), None)
     if best is None:
         return ""
-    end = CONTINUED * max(rung.pictures[-1].seconds for rung in rungs)
+    end = EXTRAPOLATION * max(rung.pictures[-1].seconds for rung in rungs)
     least: dict[str, float] = {}
     for rung in rungs:
         if rung is not best:
@@ -83,7 +86,7 @@ def _name_lines(axes: Axes, rungs: list[Rung], end: float) -> None:
     low, high = axes.get_ylim()
     heights = np.log([rung.error_after(end) / low for rung in rungs]) / np.log(high / low)
     order = np.argsort(heights)
-    positions = _apart(heights[order], 0.13)
+    positions = _spread(heights[order], 0.13)
     for position, number in zip(positions, order, strict=True):
         rung = rungs[number]
         axes.annotate(
@@ -101,19 +104,19 @@ def _name_lines(axes: Axes, rungs: list[Rung], end: float) -> None:
         )
 
 
-def _apart(positions: Doubles, least: float) -> Doubles:
-    """Spreads sorted positions to a distance of at least `least`, in one upward and one downward pass."""
+def _spread(positions: Doubles, min_distance: float) -> Doubles:
+    """Moves sorted positions apart to at least a minimum distance, in one upward and one downward pass."""
     moved: Doubles = positions.copy()
     for k in range(1, len(moved)):
-        moved[k] = max(moved[k], moved[k - 1] + least)
+        moved[k] = max(moved[k], moved[k - 1] + min_distance)
     moved[-1] = min(moved[-1], max(1.0, positions[-1]))
     for k in range(len(moved) - 2, -1, -1):
-        moved[k] = min(moved[k], moved[k + 1] - least)
+        moved[k] = min(moved[k], moved[k + 1] - min_distance)
     return moved
 
 
 def _draw_frontier(axes: Axes, rungs: tuple[Rung, ...]) -> None:
-    """Draws the smallest error that any level has reached, over time."""
+    """Draws the smallest error that any level has reached by each time."""
     lines = [np.log([(p.seconds, p.rmse) for p in rung.pictures]).T for rung in rungs]
     times = np.linspace(min(line[0, 0] for line in lines), max(line[0, -1] for line in lines), 400)
     errors = [np.interp(times, line[0], line[1], left=np.inf) for line in lines]

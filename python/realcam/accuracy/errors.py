@@ -11,18 +11,19 @@ Codes = NDArray[np.float64]
 
 
 def codes(image: Image) -> Codes:
-    """(H, W, 3): 8-bit sRGB values of the developed picture (linear tone curve), not rounded."""
+    """Returns the sRGB values of a picture developed with the linear tone curve: (H, W, 3), 0 to 255, not rounded."""
     linear = np.clip(0.018 * image.camera.iso * image.pixels.astype(np.float64), 0, 1)
     encoded: Codes = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     return 255 * encoded
 
 
 def mean_square(a: Codes, b: Codes) -> float:
+    """Returns the mean square of the differences of two pictures, in codes^2."""
     return float(np.mean((a - b) ** 2))
 
 
 def flip(reference: Codes, picture: Codes) -> float | None:
-    """Mean FLIP error (Andersson et al. 2020), 0 to 1; None without the package flip-evaluator."""
+    """Returns the mean FLIP error (Andersson et al. 2020), 0 to 1; None without the package flip-evaluator."""
     try:
         import flip_evaluator
     except ImportError:

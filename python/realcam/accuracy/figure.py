@@ -18,7 +18,7 @@ from .error_plot import draw_errors, recommendation
 from .measurements import Measurements
 from .report import tables_of
 
-MOST_CODES = 32.0  # difference that is white in the thumbnails
+MAX_CODES = 32.0  # difference that is white in the thumbnails
 
 
 def save_figure(cost: Measurements, path: str | os.PathLike[str]) -> None:
@@ -62,10 +62,10 @@ def _drawing(cost: Measurements) -> Figure:
         for cell in thumbnails:
             cell.set_axis_off()
         for cell, rung in zip(thumbnails, cost.rungs, strict=False):
-            cell.imshow(rung.difference, cmap="inferno", vmin=0, vmax=MOST_CODES, interpolation="nearest")
+            cell.imshow(rung.difference, cmap="inferno", vmin=0, vmax=MAX_CODES, interpolation="nearest")
             cell.set_title(textwrap.fill(rung.name, 24), fontsize=6)
         below.suptitle(
-            f"Difference of the best picture of each level to the reference; white: {MOST_CODES:g} codes", fontsize=9
+            f"Difference of the best picture of each level to the reference; white: {MAX_CODES:g} codes", fontsize=9
         )
     return figure
 
@@ -75,7 +75,7 @@ def _page(cost: Measurements, drawing: str) -> str:
     left_out = [
         f"<p>{html.escape(text)}: {html.escape(', '.join(names))}.</p>"
         for text, names in (
-            ("Cannot be had of this lens on this device", cost.impossible),
+            ("Not possible with this lens on this device", cost.impossible),
             ("Not measured", cost.missing),
         )
         if names

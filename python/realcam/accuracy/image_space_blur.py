@@ -1,7 +1,7 @@
 """Depth of field as a post-process: blurs a sharp picture by the circles of confusion of its depths.
 
-The methods that rendering through a lens is compared with (docs/accuracy.md). Both take linear light, (H, W, 3), and
-the circles' diameters in pixels, (H, W); neither can recover what is occluded in the sharp picture.
+Rendering through a lens is compared with these two methods (docs/accuracy.md). Both take linear light, (H, W, 3), and
+the diameters of the circles of confusion in pixels, (H, W). Neither can recover what is occluded in the sharp picture.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ Picture = NDArray[np.float32]
 
 
 def gathered(picture: Picture, diameters: Picture, depth: Picture) -> Picture:
-    """Separable gather filter: one pass over rows and one over columns.
+    """Blurs a picture with a separable gather filter: one pass along the columns and one along the rows.
 
     After T. Zhou, J. X. Chen and M. Pullen, "Accurate depth of field simulation in real time", Computer Graphics Forum
     26 (2007). A pixel gathers from pixels whose circles of confusion cover it; for pixels behind it, the radius is
     limited to its own circle, so that a blurred background does not bleed over sharp objects. Weights are Gaussian,
-    with the variance of a uniform disc.
+    with the variance of a uniform disc. depth: (H, W), in metres.
     """
     for axis in (0, 1):
         picture = _gathered_along(axis, picture, diameters, depth)
@@ -26,36 +26,37 @@ def gathered(picture: Picture, diameters: Picture, depth: Picture) -> Picture:
 
 
 def _gathered_along(axis: int, picture: Picture, diameters: Picture, depth: Picture) -> Picture:
-    # A uniform disc of diameter d has the variance d^2 / 16 along each axis; a sigma of a third of a pixel is sharp.
+    # A uniform disc of diameter d has the variance d^2 / 16 along each axis. With a sigma of a third of a pixel the
+    # picture stays sharp.
     sigma = np.maximum(diameters / 4, 0.33).astype(np.float32)
     total = np.zeros_like(picture)
     weights = np.zeros_like(depth)
     reach = min(int(np.ceil(3 * sigma.max())), picture.shape[axis] - 1)
     for offset in range(-reach, reach + 1):
-        here, there = _overlap(picture.shape[axis], offset, axis)
-        behind = depth[there] > depth[here]
-        spread = np.where(behind, np.minimum(sigma[there], sigma[here]), sigma[there])
+        pixels, neighbours = _overlap(picture.shape[axis], offset, axis)
+        is_behind = depth[neighbours] > depth[pixels]
+        spread = np.where(is_behind, np.minimum(sigma[neighbours], sigma[pixels]), sigma[neighbours])
         weight = np.exp(-0.5 * (offset / spread) ** 2) / spread
-        total[here] += weight[..., None] * picture[there]
-        weights[here] += weight
+        total[pixels] += weight[..., None] * picture[neighbours]
+        weights[pixels] += weight
     blurred: Picture = total / weights[..., None]
     return blurred
 
 
 def _overlap(length: int, offset: int, axis: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
-    """Index pair of all pixels with a neighbour at `offset` along the axis, and of those neighbours."""
-    here = slice(max(0, -offset), length - max(0, offset))
-    there = slice(max(0, offset), length - max(0, -offset))
+    """Returns the index of all pixels with a neighbour at `offset` along the axis, and that of these neighbours."""
+    pixels = slice(max(0, -offset), length - max(0, offset))
+    neighbours = slice(max(0, offset), length - max(0, -offset))
     whole = slice(None)
-    return ((here, whole), (there, whole)) if axis == 0 else ((whole, here), (whole, there))
+    return ((pixels, whole), (neighbours, whole)) if axis == 0 else ((whole, pixels), (whole, neighbours))
 
 
 def diffused(picture: Picture, diameters: Picture) -> Picture:
-    """Heat diffusion: light spreads with a conductivity given by the circles of confusion.
+    """Blurs a picture by heat diffusion: light spreads with a conductivity given by the circles of confusion.
 
     After M. Kass, A. Lefohn and J. Owens, "Interactive depth of field using simulated diffusion on a GPU", Pixar
-    (2006): one implicit step along the rows and one along the columns, each a tridiagonal system; between two pixels
-    the smaller circle conducts.
+    (2006): one implicit step along the rows and one along the columns, each a tridiagonal system. The smaller circle of
+    two adjacent pixels gives the conductivity between them.
     """
     variance = (diameters / 4).astype(np.float64) ** 2
     spread = _step_along_rows(picture.astype(np.float64), variance)
@@ -65,15 +66,18 @@ def diffused(picture: Picture, diameters: Picture) -> Picture:
 
 
 def _step_along_rows(picture: NDArray[np.float64], variance: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Solves u - (k u')' = picture, with an impulse response of variance 2 k, by the Thomas algorithm on all rows."""
-    conducts = 0.5 * np.minimum(variance[:, :-1], variance[:, 1:])
-    left, right = np.pad(conducts, ((0, 0), (1, 0))), np.pad(conducts, ((0, 0), (0, 1)))
-    middle = 1 + left + right
+    """Solves u - (k u')' = picture along each row by the Thomas algorithm.
+
+    The impulse response has the variance 2 k.
+    """
+    conductivity = 0.5 * np.minimum(variance[:, :-1], variance[:, 1:])
+    left, right = np.pad(conductivity, ((0, 0), (1, 0))), np.pad(conductivity, ((0, 0), (0, 1)))
+    diagonal = 1 + left + right
     columns = picture.shape[1]
-    factors, values = np.empty_like(middle), np.empty_like(picture)
-    factors[:, 0], values[:, 0] = right[:, 0] / middle[:, 0], picture[:, 0] / middle[:, 0, None]
+    factors, values = np.empty_like(diagonal), np.empty_like(picture)
+    factors[:, 0], values[:, 0] = right[:, 0] / diagonal[:, 0], picture[:, 0] / diagonal[:, 0, None]
     for x in range(1, columns):
-        pivot = middle[:, x] - left[:, x] * factors[:, x - 1]
+        pivot = diagonal[:, x] - left[:, x] * factors[:, x - 1]
         factors[:, x] = right[:, x] / pivot
         values[:, x] = (picture[:, x] + left[:, x, None] * values[:, x - 1]) / pivot[:, None]
     for x in range(columns - 2, -1, -1):

@@ -22,13 +22,13 @@ from .rungs import Level, known_effects, levels_of, sampling_strategies
 
 
 class AccuracyCost(Measurements):
-    """Measurements with their presentations: `str` gives tables."""
+    """Measurements with their presentations: `str` gives Markdown tables."""
 
     def __str__(self) -> str:
         return text_of(self)
 
     def json(self) -> str:
-        """JSON of everything except the pictures."""
+        """Returns everything except the pictures as JSON."""
 
         def plain(item: object) -> object:
             if isinstance(item, dict):
@@ -40,7 +40,7 @@ class AccuracyCost(Measurements):
         return json.dumps(plain(asdict(self)), indent=1)
 
     def figure(self, path: str | os.PathLike[str]) -> None:
-        """Writes error over time as .svg, or as .html with the table. Raises ImageFileError."""
+        """Writes plots of the error over time as .svg, or as .html with the tables. Raises ImageFileError."""
         from .figure import save_figure  # loads matplotlib, which tables do not need
 
         save_figure(self, path)
@@ -67,7 +67,8 @@ def accuracy_cost(
     size: pixels of the longer side. max_spp: each level is rendered with 1, 4, 16, ... samples up to this number.
     reference_spp: samples of each of the two reference pictures, of the full lens with `effects`; effects None: all
     effects whose data the lens file has. levels, samplings: measure the levels of simulation, and compare strategies of
-    pupil sampling. Ctrl-C ends the measurement early; the result then lists what is missing.
+    pupil sampling. progress: called with the fraction done. Ctrl-C ends the measurement early; the result then lists
+    the levels that are missing.
 
     Raises what render raises.
     """
@@ -76,43 +77,43 @@ def accuracy_cost(
     scale = min(1.0, size / max(columns, rows))
     small = (max(1, round(columns * scale)), max(1, round(rows * scale)))
     camera = camera.replace(film=film.replace(resolution=small), model="full")
-    asked = RenderSettings(effects=(), max_bounces=max_bounces)
-    bounces = resolved(scene, camera, asked, device, stacklevel=2).settings.max_bounces
+    requested = RenderSettings(effects=(), max_bounces=max_bounces)
+    bounces = resolved(scene, camera, requested, device, stacklevel=2).settings.max_bounces
     settings = {"device": device, "threads": threads, "max_bounces": bounces}
-    wanted = tuple(known_effects(camera) if effects is None else effects)
+    reference_effects = tuple(known_effects(camera) if effects is None else effects)
 
-    def tell(done: float) -> None:
+    def report(done: float) -> None:
         if progress is not None:
             progress(done)
 
-    tell(0.0)
-    reference = Reference(scene, camera, wanted, reference_spp, seed, settings)
-    climbs = [(level, reference) for level in levels_of(scene, camera, wanted, **settings)] if levels else []
-    rung_count = len(climbs)
+    report(0.0)
+    reference = Reference(scene, camera, reference_effects, reference_spp, seed, settings)
+    pairs = [(level, reference) for level in levels_of(scene, camera, reference_effects, **settings)] if levels else []
+    level_count = len(pairs)
     if samplings:
         without_effects = Reference(scene, camera, (), reference_spp, seed, settings)
-        climbs += [(level, without_effects) for level in sampling_strategies()]
+        pairs += [(level, without_effects) for level in sampling_strategies()]
     done: list[tuple[bool, Rung]] = []
-    missing = [level.name for level, _ in climbs]
+    missing = [level.name for level, _ in pairs]
     impossible: list[str] = []
     try:
-        for number, (level, against) in enumerate(climbs):
-            tell((1 + number) / (1 + len(climbs)))
+        for number, (level, against) in enumerate(pairs):
+            report((1 + number) / (1 + len(pairs)))
             try:
-                rung = _climb(level, scene, camera, against, max_spp, seed, settings)
+                rung = _measure(level, scene, camera, against, max_spp, seed, settings)
             except InputError:
-                # The reference was taken, so only this level is impossible. An ideal lens sees nothing at 90 degrees to
-                # the side, a GPU has no double precision, and an exit pupil may lie behind the film.
+                # The reference was rendered, so only this level is impossible. An ideal lens images no point at 90
+                # degrees to its axis, a GPU has no double precision, and an exit pupil may lie behind the film.
                 impossible.append(level.name)
             else:
-                done.append((number < rung_count, rung))
+                done.append((number < level_count, rung))
             missing.remove(level.name)
     except KeyboardInterrupt:
         pass
     return AccuracyCost(
         device=reference.image.stats.device,
         size=small,
-        reference=", ".join(("full lens", *wanted)) + f", {counted(2 * reference_spp, 'sample')}",
+        reference=", ".join(("full lens", *reference_effects)) + f", {counted(2 * reference_spp, 'sample')}",
         reference_noise_codes=math.sqrt(reference.variance),
         rungs=tuple(rung for is_level, rung in done if is_level),
         samplings=tuple(rung for is_level, rung in done if not is_level),
@@ -123,7 +124,10 @@ def accuracy_cost(
 
 
 class Reference:
-    """Reference of the errors: the mean of two pictures with spp samples each; variance: of the mean, codes^2."""
+    """Reference of the errors: the mean of two pictures with spp samples each.
+
+    codes: of the mean picture. variance: of that mean, in codes^2.
+    """
 
     def __init__(
         self,
@@ -145,7 +149,7 @@ class Reference:
         self.variance = mean_square(a, b) / 4
 
 
-def _climb(
+def _measure(
     level: Level,
     scene: Scene,
     camera: Camera,
@@ -154,7 +158,7 @@ def _climb(
     seed: int,
     settings: dict[str, object],
 ) -> Rung:
-    level.image(scene, camera, spp=1, seed=seed, **settings)  # warm-up: caches that are built once do not count
+    level.image(scene, camera, spp=1, seed=seed, **settings)  # so that the times exclude the building of caches
     pictures = []
     spp = 1
     while True:
@@ -177,16 +181,16 @@ def _climb(
     if not level.is_stratified or bias2 < 3 * math.sqrt(2 / picture.size) * (noise2 + reference.variance):
         bias2 = 0.0
     stats = image.stats
-    busy = max(stats.lens_seconds + stats.scene_seconds + stats.other_seconds, 1e-12)
+    total_seconds = max(stats.lens_seconds + stats.scene_seconds + stats.other_seconds, 1e-12)
     return Rung(
         name=level.name,
         model=level.model,
         effects=level.effects,
         pictures=tuple(pictures),
         samples_per_second=spp * picture.shape[0] * picture.shape[1] / seconds,
-        lens_share=stats.lens_seconds / busy,
-        scene_share=stats.scene_seconds / busy,
-        other_share=stats.other_seconds / busy,
+        lens_share=stats.lens_seconds / total_seconds,
+        scene_share=stats.scene_seconds / total_seconds,
+        other_share=stats.other_seconds / total_seconds,
         bias_codes=math.sqrt(max(0.0, bias2)),
         noise_codes=math.sqrt(noise2),
         difference=np.abs(mean - reference.codes).mean(axis=2),

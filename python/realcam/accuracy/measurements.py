@@ -12,7 +12,11 @@ from .errors import Codes
 
 @dataclass(frozen=True)
 class Measured:
-    """Time and error of a picture. rmse: against the reference, in 8-bit codes; flip: 0 to 1, None if not installed."""
+    """Time and error of a picture.
+
+    seconds: of sampling and post-processing, without setup. rmse: RMS error against the reference, in 8-bit codes.
+    flip: mean FLIP error, 0 to 1; None without the package flip-evaluator.
+    """
 
     spp: int
     seconds: float
@@ -22,11 +26,12 @@ class Measured:
 
 @dataclass(frozen=True)
 class Rung:
-    """One level of simulation.
+    """Measurements of one level of simulation.
 
-    bias_codes: RMS error without noise; noise_codes: RMS noise of the picture with the most samples.
-    lens_share, scene_share, other_share: fractions of the time. difference: (H, W), mean absolute difference of the
-    channels between the best picture and the reference, codes. group, is_recommended: see Level.
+    name, model, effects, group, is_recommended: see Level. pictures: in the order of their samples. bias_codes: RMS
+    error without noise, in 8-bit codes. noise_codes: RMS noise of the picture with the most samples, in 8-bit codes.
+    lens_share, scene_share, other_share: fractions of the time. difference: (H, W), absolute difference between the
+    best picture and the reference, averaged over the channels, in 8-bit codes.
     """
 
     name: str
@@ -44,13 +49,19 @@ class Rung:
     is_recommended: bool
 
     def error_after(self, seconds: float) -> float:
-        """Extrapolated error after a longer time: noise falls with the square root of the time, bias stays."""
+        """Returns the error after a longer time, in 8-bit codes.
+
+        It is extrapolated: noise falls with the square root of the time, bias stays.
+        """
         last = self.pictures[-1]
         noise2 = max(0.0, last.rmse**2 - self.bias_codes**2)
         return math.sqrt(min(self.bias_codes, last.rmse) ** 2 + noise2 * last.seconds / seconds)
 
     def seconds_to(self, rmse: float) -> float:
-        """Seconds until the error falls to `rmse`, interpolated logarithmically between the pictures; inf: never."""
+        """Returns the seconds after which the error has fallen to `rmse`, in 8-bit codes; inf: never.
+
+        They are interpolated logarithmically between the pictures.
+        """
         if self.bias_codes >= rmse:
             return math.inf
         last = None

@@ -9,7 +9,10 @@ from .measurements import Measurements, Rung
 
 
 def goals_of(rungs: tuple[Rung, ...]) -> list[float]:
-    """Target errors of the table's time columns, codes: 4, 2 and 1 times the least error at the most samples."""
+    """Returns the target errors of the table's time columns, in 8-bit codes.
+
+    They are 4, 2 and 1 times the smallest error that a level has with its most samples.
+    """
     if not rungs:
         return []
     best = min(rung.pictures[-1].rmse for rung in rungs)
@@ -17,7 +20,7 @@ def goals_of(rungs: tuple[Rung, ...]) -> list[float]:
 
 
 def tables_of(cost: Measurements) -> list[tuple[str, list[str], list[list[str]]]]:
-    """Title, column heads and cells of each table."""
+    """Returns the title, the column heads and the rows of cells of each table."""
     return [
         (title, *_rows_of(rungs))
         for title, rungs in (("level", cost.rungs), ("every surface, sampled over", cost.samplings))
@@ -48,7 +51,7 @@ def _cells(rung: Rung, goals: list[float]) -> list[str]:
 
 
 def text_of(cost: Measurements) -> str:
-    """Markdown tables, preceded by a description of the comparison and followed by the missing levels."""
+    """Returns Markdown tables, preceded by a description of the comparison and followed by the missing levels."""
     noise = number_text(cost.reference_noise_codes, 2)
     lines = [
         f"{cost.size[0]} x {cost.size[1]} pixels on {cost.device}. Bias, noise (with the most samples) and errors in "
@@ -58,7 +61,7 @@ def text_of(cost: Measurements) -> str:
     for title, heads, rows in tables_of(cost):
         lines += ["", *_markdown([title, *heads], rows)]
     if cost.impossible:
-        lines += ["", f"Cannot be had of this lens on this device: {', '.join(cost.impossible)}."]
+        lines += ["", f"Not possible with this lens on this device: {', '.join(cost.impossible)}."]
     if cost.missing:
         lines += ["", f"Interrupted; not measured: {', '.join(cost.missing)}."]
     return "\n".join(lines) + "\n"

@@ -21,9 +21,9 @@ Blur = Callable[[Image], Picture]
 class Level:
     """A level of simulation, or a sampling strategy.
 
-    model, effects, pupil_sampling, light_tracing: as for render; blur: post-process of the picture; is_stratified:
-    False uses independent random numbers for each sample of a pixel. group: levels with the same group share a plot;
-    is_recommended: True for the default of render.
+    model, effects, pupil_sampling, light_tracing: as for render. blur: post-process of the picture. is_stratified:
+    False uses independent random numbers for each sample of a pixel. group: title of the plot that levels with the
+    same group share. is_recommended: True for the default of render.
     """
 
     name: str
@@ -41,7 +41,8 @@ class Level:
         image = self._rendered(scene, camera, spp, seed, settings)
         seconds = image.stats.seconds - image.stats.setup_seconds
         if not self.is_stratified:
-            # The first samples of many seeds are independent. They take as long as as many samples of one seed.
+            # The first samples of different seeds are independent. The seconds are those of the first picture, whose
+            # number of samples is the same.
             total = sum(self._rendered(scene, camera, 1, seed * spp + k, settings).pixels for k in range(spp))
             image = replace(image, pixels=np.asarray(total / spp, np.float32))
         if self.blur:
@@ -79,17 +80,17 @@ def _diffuse(image: Image) -> Picture:
 
 
 def known_effects(camera: Camera) -> tuple[str, ...]:
-    """Names of the optional effects whose data the lens file has; effects that need coatings come last.
+    """Returns the names of the optional effects whose data the lens file has; effects that need coatings come last.
 
     Film reflection is excluded, because no lens file states the film's reflectance.
     """
-    wanted = [effect for effect in effects() if not effect.is_on and effect.name != "film_reflection"]
-    wanted.sort(key=lambda effect: effect.needs_coatings)
-    return tuple(effect.name for effect in wanted if not (effect.needs_coatings and camera.lens.unknown_coatings))
+    optional = [effect for effect in effects() if not effect.is_on and effect.name != "film_reflection"]
+    optional.sort(key=lambda effect: effect.needs_coatings)
+    return tuple(effect.name for effect in optional if not (effect.needs_coatings and camera.lens.unknown_coatings))
 
 
 def sampling_strategies() -> list[Level]:
-    """Sampling strategies of the full lens, which all converge to the same picture."""
+    """Returns sampling strategies of the full lens, which all converge to the same picture."""
     random, others, outline = "random samples", "other pupils", "fitted outline"
     by_pixels = [
         Level("rear element, random", pupil_sampling="rear_element", is_stratified=False, group=random),
@@ -104,7 +105,9 @@ def sampling_strategies() -> list[Level]:
 
 
 def levels_of(scene: Scene, camera: Camera, effects: tuple[str, ...], **settings: object) -> list[Level]:
-    """Levels from the crudest to the full lens with all `effects` of the reference, then the planned level."""
+    """Returns the levels from the simplest to the full lens with all `effects` of the reference, then the planned
+    level.
+    """
     levels = [
         Level("pinhole, gather filter", "pinhole", blur=_gather, group="blur of a sharp picture"),
         Level("pinhole, heat diffusion", "pinhole", blur=_diffuse, group="blur of a sharp picture"),
@@ -118,6 +121,6 @@ def levels_of(scene: Scene, camera: Camera, effects: tuple[str, ...], **settings
     ]
     for count in range(1, len(effects) + 1):
         levels.append(Level(f"+ {effects[count - 1]}", effects=effects[:count], group="with effects"))
-    decided = plan(scene, camera, **settings)  # type: ignore[arg-type]
-    levels.append(Level("planned", decided.model, tuple(decided.effects), group="with effects", is_recommended=True))
+    planned = plan(scene, camera, **settings)  # type: ignore[arg-type]
+    levels.append(Level("planned", planned.model, tuple(planned.effects), group="with effects", is_recommended=True))
     return levels

@@ -1,1 +1,1 @@
-"""The commands that are Python. The package realcam_command hands the others to the extension."""
+"""Commands of the program `realcam` that are written in Python. realcam_command runs the others in the extension."""

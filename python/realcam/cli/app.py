@@ -1,4 +1,4 @@
-"""The command line: the commands that are Python, and the user's mistakes in one line."""
+"""Entry point of the commands in Python: the list of commands, and errors as one line."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ app.command("dataset")(dataset.dataset)
 app.command("view")(view.view)
 
 
-def _print_version(wanted: bool) -> None:
-    if wanted:
+def _print_version(is_set: bool) -> None:
+    if is_set:
         typer.echo(f"realcam {__version__}")
         raise typer.Exit
 
@@ -51,7 +51,8 @@ def _options(
 
 
 def run() -> None:
-    """Runs the command line; the user's mistakes end in one line on stderr and exit code 2, Ctrl-C in 130."""
+    """Runs the command line of this process and exits: with 2 after an error, which is printed on stderr in one line,
+    and with 130 after Ctrl-C."""
     warnings.showwarning = _show_warning
     warnings.simplefilter("always", UserWarning)
     command = typer.main.get_command(app)

@@ -1,4 +1,4 @@
-"""realcam bench: measure this machine. What is measured is in benchmarks/ of the source repository."""
+"""The command `realcam bench`: runs benchmarks on this machine. They are in benchmarks/ of the source repository."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def bench(
         ),
     ] = None,
     threads: Threads = 0,
-    as_json: Annotated[bool, typer.Option("--json", help="As JSON, with machine and commit")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, with machine and commit")] = False,
 ) -> None:
     """Measure rays through the lens, pupil set-up, sampling efficiency, a frame and a sensor on this machine."""
     folder = Path(__file__).resolve().parents[3] / "benchmarks"
@@ -38,11 +38,11 @@ def bench(
 
     benchmarks = CPU_BENCHMARKS | GPU_BENCHMARKS
     has_gpu = any(device.name.startswith("cuda") for device in devices())
-    wanted = names or list(benchmarks if has_gpu else CPU_BENCHMARKS)
-    wanted = [known_word(name, benchmarks, "benchmark") for name in wanted]
+    selected = names or list(benchmarks if has_gpu else CPU_BENCHMARKS)
+    selected = [known_word(name, benchmarks, "benchmark") for name in selected]
     results: dict[str, object] = {}
     status = Console(stderr=True)
-    for name in wanted:
+    for name in selected:
         with status.status(f"measuring {name}"):
             results[name] = benchmarks[name](threads)
         if not as_json:

@@ -1,7 +1,6 @@
-"""Normalises command lines as people write them: numbers with units, US spellings, options of other programs.
+"""Normalises command lines for the commands' parsers: numbers with units, US spellings, options of other programs.
 
-The result is in the words of the commands' parsers in Python and C++, which report everything that is not understood
-here.
+The parsers, in Python and C++, report all errors that are not found here.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ _ANGLES_DEG = dict.fromkeys(("deg", "degree", "degrees", "°"), "1")
 
 
 def _in(unit: str, sizes: Mapping[str, str]) -> dict[str, Decimal]:
-    """Returns the sizes of all units, measured in one of them."""
+    """Returns the sizes of all units, as multiples of `unit`."""
     return {name: Decimal(size) / Decimal(sizes[unit]) for name, size in sizes.items()}
 
 
@@ -120,7 +119,7 @@ _AMERICAN = {
 }  # fmt: skip
 
 
-def spelled(word: str, known: Iterable[str]) -> str:
+def in_known_spelling(word: str, known: Iterable[str]) -> str:
     """Returns the known word that differs only in American or British spelling; otherwise the word itself."""
     names = list(known)
     return word if word in names else next((name for name in names if _american(name) == _american(word)), word)
@@ -132,7 +131,7 @@ def _american(word: str) -> str:
     return word
 
 
-# Option names of other programs and of photographers, with realcam's; the first one that a command has is suggested.
+# Option names that users of other programs try, and realcam's names; the first one that a command has is suggested.
 _OTHER_NAMES = {
     **dict.fromkeys(("--aperture", "--f-stop", "--fstop", "--fnumber"), ("--f-number",)),
     **dict.fromkeys(("--samples", "--num-samples", "--sample-count"), ("--spp", "--copies", "--max-spp")),
@@ -144,22 +143,27 @@ _OTHER_NAMES = {
     "--sensitivity": ("--iso",),
     "--gpu": ("--device",),
 }
+# Suffixes of files that commands write.
 _WRITTEN = (
     ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".exr", ".dng", ".npy", ".mp4", ".svg", ".pdf", ".html", ".zip",
     ".csv",
 )  # fmt: skip
+# Suffixes of files that commands read, by the placeholder of an argument.
 _READ = {
     "SCENE": (*SCENE_SUFFIXES, ".toml"),
     "LENS": (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa"),
     "FILM": (".exr",),
     "RECIPE": (".toml",),
-}  # keyed by the placeholder of an argument
+}
 
 
 @dataclass(frozen=True)
 class Grammar:
-    """Options and arguments of a command. name: as typed, "realcam render". options: placeholder of the value by option
-    name; empty for a flag. arguments: placeholders in order. takes_more: the last argument may be repeated."""
+    """Options and arguments of a command.
+
+    name: command as typed, "realcam render". options: placeholder of the value by option name; empty for a flag.
+    arguments: placeholders in order. takes_more: True if the last argument may be repeated.
+    """
 
     name: str
     options: Mapping[str, str]
@@ -167,16 +171,17 @@ class Grammar:
     takes_more: bool = False
 
 
-def understood(words: Sequence[str], grammar: Grammar) -> list[str]:
-    """Translates the words of a command for its parser: plain numbers, its own options, files of bundled scenes.
+def normalised(words: Sequence[str], grammar: Grammar) -> list[str]:
+    """Returns the words of a command line behind the command's name in the form that its parser expects.
 
+    Numbers have no units, options have their own spelling, and names of bundled scenes are replaced by their files.
     Raises InputError with a suggestion for options of other programs, an output without -o and swapped arguments.
     """
     result: list[str] = []
     arguments: list[str] = []
     values: list[tuple[str, str]] = []  # (option, value)
     unknown: list[str] = []
-    option = ""  # takes the next word as its value
+    option = ""  # the option whose value is the next word; empty: there is none
     for i, word in enumerate(words):
         if option and word not in grammar.options:
             result.append(_plain_value(option, word, grammar))
@@ -193,7 +198,7 @@ def understood(words: Sequence[str], grammar: Grammar) -> list[str]:
             result.append(os.fspath(bundled_file(word, (".toml", *SCENE_SUFFIXES))) if is_scene else word)
             continue
         name, equals, value = word.partition("=")
-        name = spelled(name, grammar.options)
+        name = in_known_spelling(name, grammar.options)
         if name not in grammar.options:
             unknown.append(name)
         if equals:
@@ -213,8 +218,8 @@ def understood(words: Sequence[str], grammar: Grammar) -> list[str]:
     return result
 
 
-def understood_in_cpp(words: Sequence[str]) -> list[str]:
-    """Applies understood() to a command line that begins with the name of a command in C++."""
+def normalised_for_cpp(words: Sequence[str]) -> list[str]:
+    """Applies normalised() to a command line that begins with a command in C++; returns others unchanged."""
     for names, _, options in _core._listed_commands():
         if words[: len(names)] == names:
             grammar = Grammar(
@@ -222,7 +227,7 @@ def understood_in_cpp(words: Sequence[str]) -> list[str]:
                 {"-h": "", "--help": "", **{name: value for found, value, _ in options for name in found}},
                 [value for found, value, _ in options if not found],
             )
-            return [*names, *understood(words[len(names) :], grammar)]
+            return [*names, *normalised(words[len(names) :], grammar)]
     return list(words)
 
 
@@ -232,12 +237,13 @@ def _plain_value(option: str, text: str, grammar: Grammar) -> str:
 
 
 def _placeholder(index: int, grammar: Grammar) -> str:
-    """Placeholder of the argument at an index; empty if the command takes fewer arguments."""
+    """Returns the placeholder of the argument at an index; empty if the command takes fewer arguments."""
     last = len(grammar.arguments) - 1
     return grammar.arguments[min(index, last)] if last >= 0 and (index <= last or grammar.takes_more) else ""
 
 
 def _check_arguments(arguments: Sequence[str], outputs: Sequence[str], grammar: Grammar) -> None:
+    """Raises InputError with a suggestion if arguments and --output seem to be swapped or options to be missing."""
     if not arguments or not grammar.arguments:
         return
     first, kind = arguments[0], _placeholder(0, grammar)
@@ -255,7 +261,7 @@ def _check_arguments(arguments: Sequence[str], outputs: Sequence[str], grammar: 
 
 
 def _is_read(word: str, kind: str) -> bool:
-    """True for a file, or a bundled name, that may stand for an argument of this kind."""
+    """Returns True for a file, or a bundled name, that is valid for an argument with the placeholder `kind`."""
     names = {"SCENE": shot_names, "LENS": lens_names}.get(kind, list)()
     return _suffix(word) in _READ.get(kind, ()) or word in names
 

@@ -1,4 +1,4 @@
-"""The commands in C++, as the command line of Python lists and completes them."""
+"""Entries for the commands in C++, so that the help of Python's command line lists them and shells complete them."""
 
 from __future__ import annotations
 
@@ -16,14 +16,19 @@ from .completions import completion_of
 
 @cache
 def _listed() -> dict[tuple[str, ...], tuple[str, list[tuple[list[str], str, str]]]]:
-    """Description and options of each, by its words. None where the extension is built without them."""
+    """Returns (description, options) of each command in C++ by its words; an option is (names, placeholder, help).
+
+    Empty if the extension is built without commands.
+    """
     listed = getattr(_core, "_listed_commands", list)
     return {tuple(words): (description, options) for words, description, options in listed()}
 
 
 def add_command_in_cpp(app: typer.Typer, *words: str) -> None:
-    """Lists a command in the help, and completes its options in a shell. realcam_command has handed the command to the
-    extension before anybody calls it here."""
+    """Adds a command in C++ to the help and to the shell completion.
+
+    The command itself is never called here, because realcam_command runs it in the extension before.
+    """
     if words not in _listed():
         return
     description, options = _listed()[words]

@@ -1,4 +1,4 @@
-"""realcam compare: a shot at several apertures, with several lenses or at several zoom positions."""
+"""The command `realcam compare`: a shot at several apertures, with several lenses or at several zoom positions."""
 
 from __future__ import annotations
 
@@ -41,9 +41,7 @@ def compare(
     changes: ShotOptions,  # type: ignore[valid-type]
     f_number: Annotated[
         float | None,
-        typer.Option(
-            "--f-number", metavar="N", help="Of all pictures, at the brightness of the shot, where it is not varied"
-        ),
+        typer.Option("--f-number", metavar="N", help="f-number of all pictures, with the brightness of the shot"),
     ] = None,
     size: Annotated[
         int, typer.Option(metavar="PIXELS", help="Pixels of the longer side of each picture", min=8, max=4096)
@@ -67,19 +65,19 @@ def compare(
         raise InputError(f'--vary: "{vary:.60}": expected NAME=VALUE,..., as f_number=2,4,8')
     name = name.replace("-", "_")
     if f_number is not None and name == "f_number":
-        raise InputError("--f-number: the f-number is what --vary names")
-    described = load_shot(shot, changes, device)
+        raise InputError("--f-number cannot be combined with --vary f_number")
+    base_shot = load_shot(shot, changes, device)
     if f_number is not None:  # keeps the brightness of the shot
-        described = variations(described, "f_number", [str(f_number)])[0].shot
-    settings = described.settings.with_(layers=GUIDES) if denoise else described.settings
+        base_shot = variations(base_shot, "f_number", [str(f_number)])[0].shot
+    settings = base_shot.settings.with_(layers=GUIDES) if denoise else base_shot.settings
     pictures: list[tuple[str, Image]] = []
     kind = "F_NUMBER" if name == "f_number" else ""
-    varied = variations(described, name, [plain_number(value, kind) for value in values.split(",")])
+    varied = variations(base_shot, name, [plain_number(value, kind) for value in values.split(",")])
     check_figure_target(output)  # again: the input files, which must not be overwritten, are known only now
     with interrupt_noted() as is_interrupted:
         for variation in varied:
-            taken_away = ""  # noise warning to suppress, because the denoiser removes most of the noise
-            taken = Shot(described.scene, sized(variation, size), settings, described.tone)
+            suppressed_warning = ""  # about noise, most of which the denoiser removes
+            varied_shot = Shot(base_shot.scene, sized(variation, size), settings, base_shot.tone)
             with (
                 warnings.catch_warnings(record=True) as caught,
                 progress_bar(variation.label, is_shown=not quiet) as bar,
@@ -87,20 +85,20 @@ def compare(
             ):
                 warnings.simplefilter("always")
 
-                def goes_on(done: float, bar: Callable[[float], bool] = bar) -> bool:
-                    return bar(done) and not is_interrupted()
+                def report(fraction: float, bar: Callable[[float], bool] = bar) -> bool:
+                    return bar(fraction) and not is_interrupted()
 
-                image = taken.render(device=device, progress=goes_on, on_stop="keep")
-                taken_away = image.shortfall if denoise else ""
+                image = varied_shot.render(device=device, progress=report, on_stop="keep")
+                suppressed_warning = image.shortfall if denoise else ""
                 pictures.append((variation.label, image.denoised() if denoise else image))
             for warning in caught:
-                if not taken_away or str(warning.message) != taken_away:
+                if not suppressed_warning or str(warning.message) != suppressed_warning:
                     warnings.warn(f"{variation.label}: {warning.message}", stacklevel=1)
             if is_interrupted():
                 break
         if not pictures:
             raise KeyboardInterrupt
-        save_sheet(pictures, output, columns, tone=described.tone, theme=theme)
+        save_sheet(pictures, output, columns, tone=base_shot.tone, theme=theme)
     if as_json:
         rows = [
             {
@@ -128,6 +126,7 @@ def compare(
 
 
 def sized(variation: Variation, longer_side_px: int) -> Camera:
+    """Returns the variation's camera with fewer or more pixels on the same film."""
     camera = variation.shot.camera
     scale = longer_side_px / max(camera.film.resolution)
     width, height = (max(1, round(scale * side)) for side in camera.film.resolution)
@@ -136,7 +135,7 @@ def sized(variation: Variation, longer_side_px: int) -> Camera:
 
 @contextmanager
 def interrupt_noted() -> Iterator[Callable[[], bool]]:
-    """Yields a function that tells whether Ctrl-C was pressed. Pressed again, it raises KeyboardInterrupt."""
+    """Yields a function that returns True once Ctrl-C was pressed. A second Ctrl-C raises KeyboardInterrupt."""
     seen: list[int] = []
 
     def note(number: int, _: FrameType | None) -> None:

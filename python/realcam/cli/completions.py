@@ -1,4 +1,4 @@
-"""Shell completion of arguments and options. All others are completed as names of files."""
+"""Shell completion of arguments and options whose values are names. Other values are completed as files."""
 
 from __future__ import annotations
 
@@ -15,6 +15,9 @@ _NAMES: dict[str, Callable[[], list[str]]] = {
 
 
 def completion_of(metavar: str | None) -> Callable[[str], list[str]] | None:
-    """Names that begin as the word does that is being typed, for values of a kind that has names."""
+    """Returns a function from an incomplete word to the names that begin with it, for values with this placeholder.
+
+    Returns None if values of this kind have no names.
+    """
     names = _NAMES.get(metavar or "")
     return names and (lambda incomplete: [name for name in names() if name.startswith(incomplete)])

@@ -1,4 +1,4 @@
-"""realcam cost: what accuracy costs in time."""
+"""The command `realcam cost`: render time against accuracy of a shot at all levels of simulation."""
 
 from __future__ import annotations
 
@@ -38,29 +38,32 @@ def cost(
     ] = None,
     size: Annotated[int, typer.Option(metavar="PIXELS", help="Pixels of the longer side", min=8, max=4096)] = 320,
     max_spp: Annotated[
-        int, typer.Option(metavar="N", help="Each level is taken with 1, 4, 16, ... samples", min=4)
+        int,
+        typer.Option(
+            metavar="N",
+            help="Largest number of samples per pixel; each level is rendered with 1, 4, 16, ... of them",
+            min=4,
+        ),
     ] = 256,
-    reference_spp: Annotated[
-        int, typer.Option(metavar="N", help="Samples of what they are compared with", min=16)
-    ] = 4096,
+    reference_spp: Annotated[int, typer.Option(metavar="N", help="Samples per pixel of the reference", min=16)] = 4096,
     device: options.Device = "auto",
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
-    """Take a shot at all levels of simulation, from a blurred pinhole picture to every surface with all effects."""
+    """Render a shot at all levels of simulation, from a blurred pinhole picture to the full lens with all effects."""
     from ..accuracy import accuracy_cost  # brings matplotlib, which other commands need not load
 
     for path in output or []:
         check_target(path, (".svg", ".html"))
-    described = load_shot(shot, changes, device)
+    loaded = load_shot(shot, changes, device)
     with progress_bar("measuring", is_shown=not quiet) as bar:
         result = accuracy_cost(
-            described.scene,
-            described.camera,
+            loaded.scene,
+            loaded.camera,
             device=device,
-            threads=described.settings.threads,
-            seed=described.seed,
-            max_bounces=described.max_bounces,
+            threads=loaded.settings.threads,
+            seed=loaded.seed,
+            max_bounces=loaded.max_bounces,
             size=size,
             max_spp=max_spp,
             reference_spp=reference_spp,

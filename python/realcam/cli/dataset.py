@@ -1,4 +1,4 @@
-"""realcam dataset: labelled pictures."""
+"""The command `realcam dataset`: makes labelled pictures of random scenes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .completions import completion_of
 
 
 def dataset(
-    recipe: Annotated[Path, typer.Argument(help="What to make, .toml (docs/datasets.md)", metavar="RECIPE")],
+    recipe: Annotated[Path, typer.Argument(help="Recipe of the data set, .toml (docs/datasets.md)", metavar="RECIPE")],
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FOLDER", help="Folder of the shards; existing ones are kept")
     ],
@@ -39,21 +39,21 @@ def dataset(
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
-    """Make labelled pictures of random scenes through real lenses, in shards. Started again, it goes on."""
+    """Make labelled pictures of random scenes through real lenses, in shards. Repeat the command to continue."""
     from dataclasses import replace
 
     from ..dataset import Recipe, make
 
-    wanted = Recipe.load(recipe)
+    loaded = Recipe.load(recipe)
     if count is not None:
-        wanted = replace(wanted, count=count)
+        loaded = replace(loaded, count=count)
     with ExitStack() as stack:
         report = stack.enter_context(progress_bar("making pictures", is_shown=not quiet and not as_json))
         executor = None
         if workers is not None:
             executor = stack.enter_context(ProcessPoolExecutor(workers, mp_context=get_context("spawn")))
-        index = make(wanted, output, executor, device=device, progress=report)
+        index = make(loaded, output, executor, device=device, progress=report)
     if as_json:
-        typer.echo(json_text({"index": os.fspath(index), "pictures": wanted.count}))
+        typer.echo(json_text({"index": os.fspath(index), "pictures": loaded.count}))
     else:
         options.say_written(index, quiet)

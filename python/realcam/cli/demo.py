@@ -1,4 +1,4 @@
-"""realcam demo: the first picture."""
+"""The command `realcam demo`: renders a bundled scene through a double Gauss and through a thin lens."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ def demo(
     shot = scenes_folder() / "demo.toml"
     denoises = is_installed() if denoise is None else denoise
     samples = spp or (24 if denoises else 48)
-    words = ["--denoise"] if denoises else []
+    denoise_option = ["--denoise"] if denoises else []
     new_folders = [folder for folder in (output, *output.parents) if not folder.exists()]
     signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # so that finally clauses run
     make_folder(output)
     try:
-        _render(shot, samples, quiet, output / "demo.png", output / "demo.exr", *words)
-        _render(shot, max(1, samples // 4), quiet, output / "demo-thin-lens.png", "--model", "thin", *words)
+        _render(shot, samples, quiet, output / "demo.png", output / "demo.exr", *denoise_option)
+        _render(shot, max(1, samples // 4), quiet, output / "demo-thin-lens.png", "--model", "thin", *denoise_option)
         # The lens as in the demo shot: wide open and at close focus.
         save_cross_section(Lens.load("double-gauss-50mm").focused(1.05), output / "lens.png")
     finally:
@@ -62,12 +62,15 @@ def demo(
         if not quiet:
             typer.echo(f"{output / name}: {what}")
     if denoise is None and not denoises and not quiet:
-        typer.echo("pip install realcam[denoise] removes the noise that is left")
+        typer.echo("pip install realcam[denoise] installs a denoiser, which removes the remaining noise")
 
 
-def _render(shot: Path, spp: int, quiet: bool, *rest: Path | str) -> None:
-    """`realcam render`. Whatever goes wrong it has said itself; Ctrl-C reaches it too."""
-    words = [word if isinstance(word, str) else f"--output={word}" for word in rest]
+def _render(shot: Path, spp: int, quiet: bool, *arguments: Path | str) -> None:
+    """Runs `realcam render` as a subprocess, which reports its own errors and receives Ctrl-C from the terminal.
+
+    arguments: paths of output files, and words of the command line. Exits with the subprocess's code if it fails.
+    """
+    words = [word if isinstance(word, str) else f"--output={word}" for word in arguments]
     # Runs this package, not a module of the same name in the current folder.
     python = [sys.executable, *(["-P"] if sys.version_info >= (3, 11) else []), "-m", "realcam"]
     paths = os.pathsep.join([str(Path(__file__).resolve().parents[2]), os.environ.get("PYTHONPATH", "")])
@@ -83,4 +86,4 @@ def _render(shot: Path, spp: int, quiet: bool, *rest: Path | str) -> None:
             if program.poll() is None:
                 program.terminate()
     if code != 0:
-        sys.exit(code if code > 0 else 128 - code)
+        sys.exit(code if code > 0 else 128 - code)  # -N: killed by signal N, which shells report as 128 + N

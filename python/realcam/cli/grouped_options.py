@@ -1,4 +1,4 @@
-"""Options that belong together: one value of the function that is the command."""
+"""Groups of command line options that a command's function receives as one dataclass."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, get_type_hints
 
 
 def grouped(command: Callable[..., None]) -> Callable[..., None]:
-    """The command as typer reads it: each parameter that is a dataclass gives its place to the dataclass's fields."""
+    """Returns the command's function for typer, with the fields of a dataclass in place of a parameter of its type."""
     parameters: list[inspect.Parameter] = []
     groups: dict[str, Any] = {}
     for name, parameter in inspect.signature(command, eval_str=True).parameters.items():
@@ -28,12 +28,12 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
         ]
 
     @functools.wraps(command)
-    def flat(**words: Any) -> None:
+    def flat(**options: Any) -> None:
         values = {
-            name: group(**{field.name: words.pop(field.name) for field in fields(group)})
+            name: group(**{field.name: options.pop(field.name) for field in fields(group)})
             for name, group in groups.items()
         }
-        command(**words, **values)
+        command(**options, **values)
 
     flat.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     flat.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}

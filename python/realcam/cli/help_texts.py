@@ -1,4 +1,4 @@
-"""`--help` of the commands in Python, in the form that those in C++ have."""
+"""`--help` of the commands in Python, in the format of the commands in C++."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ Section = tuple[str, list[tuple[str, str]]]
 
 
 def finish(command: Any, words: tuple[str, ...] = ()) -> None:
-    """Finishes a command as typer makes it, and all below it. `words`: those that call it, without the program's
-    name."""
+    """Sets the help and the error handling of a command made by typer, and of its subcommands.
+
+    words: the command as typed, without the program's name.
+    """
     for parameter in command.params:
         # A parameter without a metavar gets its own name, where typer would show its type.
         if parameter.metavar is None and not getattr(parameter, "is_flag", False):
@@ -35,11 +37,12 @@ def finish(command: Any, words: tuple[str, ...] = ()) -> None:
         list(_sections(command, context)),
         examples,
     ).rstrip("\n")
-    for name, below in getattr(command, "commands", {}).items():
-        finish(below, (*words, name))
+    for name, subcommand in getattr(command, "commands", {}).items():
+        finish(subcommand, (*words, name))
 
 
 def _sections(command: Any, context: Any) -> Iterator[Section]:
+    """Yields the sections of a command's help: title, and rows of name and text."""
     parts: dict[str, list[tuple[str, str]]] = {"Arguments": [], "Options": []}
     for parameter in command.get_params(context):
         usual = "Arguments" if parameter.param_type_name == "argument" else "Options"
@@ -50,11 +53,11 @@ def _sections(command: Any, context: Any) -> Iterator[Section]:
     yield from parts.items()
     # Shows only the first paragraph of each command's help.
     commands = getattr(command, "commands", {})
-    yield "Commands", [(name, below.help.partition("\n\n")[0]) for name, below in commands.items()]
+    yield "Commands", [(name, subcommand.help.partition("\n\n")[0]) for name, subcommand in commands.items()]
 
 
 def _as_in_cpp(text: str) -> str:
-    """Defaults and ranges in brackets, in the words of the commands in C++."""
+    """Converts defaults and ranges in brackets from typer's format to that of the commands in C++."""
     text = re.sub(r"\s+\[default: ", " [", text.removesuffix("."))
     if not (brackets := re.search(r" \[[^]]*\]$", text)):
         return text

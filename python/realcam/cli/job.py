@@ -1,4 +1,4 @@
-"""realcam job: pictures on many machines."""
+"""The commands `realcam job ...`: render pictures on many machines that share a folder."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ from .shot_options import load_shot, shot_options
 if TYPE_CHECKING:
     from ..job import Job
 
-app = typer.Typer(help="Take pictures on many machines, in a folder that all of them share.", no_args_is_help=True)
+app = typer.Typer(help="Render pictures on many machines, in a folder that all of them share.", no_args_is_help=True)
 
-Folder = Annotated[Path, typer.Argument(help="The job's folder, as `realcam job make` made it", metavar="FOLDER")]
+Folder = Annotated[Path, typer.Argument(help="Folder of the job, created by `realcam job make`", metavar="FOLDER")]
 Threads = Annotated[int, typer.Option(metavar="N", help="Threads of each process; 0: all cores", min=0, max=4096)]
 
 
@@ -50,19 +50,21 @@ def make(
         str,
         typer.Option(
             metavar="DEVICE",
-            help="What all processes compute with: auto (a GPU if there is one), cpu or cuda",
+            help="Device of all processes: auto (a GPU if there is one), cpu or cuda",
             autocompletion=completion_of("DEVICE"),
         ),
     ] = "auto",
     frames: Annotated[
         str | None,
-        typer.Option("--frames", metavar="A-B", help="Frames of a film, 1-240 or 1-240x2"),
+        typer.Option("--frames", metavar="A-B", help="Frames of a video, 1-240 or 1-240x2"),
     ] = None,
     fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second of the scene's time")] = 24.0,
     tile: Annotated[
         str | None,
         typer.Option(
-            "--tile", metavar="PIXELS", help="Pixels of a unit: 128, or 128x64, in steps of 32 [a second of one core]"
+            "--tile",
+            metavar="PIXELS",
+            help="Size of a unit of work, 128 or 128x64, in steps of 32 [about a second on one core]",
         ),
     ] = None,
     sbatch: Annotated[
@@ -80,9 +82,9 @@ def make(
     ] = 8,
     quiet: options.Quiet = False,
 ) -> None:
-    """Make a job's folder of shots.
+    """Create the folder of a job from shots.
 
-    Everything is decided here, with the settings of the shot files; no file that they name is needed afterwards.
+    The folder contains everything that the job needs; the shot files and the files that they name are not read again.
     """
     from .. import files
     from ..job import Job
@@ -96,10 +98,10 @@ def make(
         (qsub, "--qsub", functools.partial(array_script, "pbs")),
         (openjd, "--openjd", openjd_template),
     ]
-    asked = [(path, option, script) for path, option, script in scripts if path is not None]
-    if len(files.check_targets([path for path, _, _ in asked])) < len(asked):
-        raise InputError(f"expected one file each for {' and '.join(option for _, option, _ in asked)}")
-    written = {path: os.fsencode(script(output, tasks)) for path, _, script in asked}
+    requested = [(path, option, script) for path, option, script in scripts if path is not None]
+    if len(files.check_targets([path for path, _, _ in requested])) < len(requested):
+        raise InputError(f"expected one file each for {' and '.join(option for _, option, _ in requested)}")
+    written = {path: os.fsencode(script(output, tasks)) for path, _, script in requested}
     named = _named_shots(shots, changes, device)
     files.check_targets(written)
     if numbers is not None:
@@ -111,7 +113,7 @@ def make(
     job = Job.make(output, named, device=device, tile=size)
     if not quiet:
         made = job.status()
-        units = "units as the noise wants them" if made.is_adaptive else counted(made.units_known, "unit")
+        units = "units as the noise requires them" if made.is_adaptive else counted(made.units_known, "unit")
         typer.echo(f"{output}: {counted(made.shots, 'picture')}, {units}")
     for path, content in written.items():
         files.write_whole(path, content)
@@ -122,13 +124,14 @@ def make(
 def work(
     folder: Folder,
     part: Annotated[
-        str | None, typer.Option("--part", metavar="K/N", help="In this process, the K-th of N parts: 3/8")
+        str | None, typer.Option("--part", metavar="K/N", help="Render the K-th of N parts, in this process: 3/8")
     ] = None,
     workers: Annotated[
-        int | None, typer.Option("--workers", metavar="N", help="Processes [one for each 4 cores]", min=1, max=10000)
+        int | None,
+        typer.Option("--workers", metavar="N", help="Number of processes [one for each 4 cores]", min=1, max=10000),
     ] = None,
     threads: Threads = 0,
-    here: Annotated[bool, typer.Option("--here", help="In this process alone, without Dask")] = False,
+    here: Annotated[bool, typer.Option("--here", help="Render in this process alone, without Dask")] = False,
     scheduler: Annotated[
         str | None,
         typer.Option(
@@ -137,14 +140,18 @@ def work(
     ] = None,
     device: Annotated[
         str | None,
-        typer.Option("--device", metavar="DEVICE", help="For example cuda:1, if a job is for GPUs; requires --here"),
+        typer.Option(
+            "--device",
+            metavar="DEVICE",
+            help="Device of this process, such as cuda:1, if a job is for GPUs; requires --here",
+        ),
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Take the samples of a job that are missing.
+    """Render the units of a job that are not done.
 
-    Run it again after Ctrl-C, a stopped machine or a full disk: only the units in hand are lost. To share the work
-    without a scheduler, give each of N processes its --part; all of them must see the folder.
+    Run it again after Ctrl-C, a stopped machine or a full disk: only the units in progress are lost. To share the work
+    without a scheduler, give each of N processes its --part; all of them must have access to the folder.
     """
     from ..job import Job
     from ..job.clusters import dask_executor, has_dask
@@ -182,11 +189,11 @@ def status(folder: Folder, as_json: options.AsJson = False) -> None:
     lines = [
         percent_text(found.share, 3),
         f"{number_text(found.units_done)} of {counted(found.units_known, 'unit')}"
-        + (" that are known so far" if found.is_adaptive and not found.is_done else ""),
+        + (" known so far" if found.is_adaptive and not found.is_done else ""),
         f"{number_text(found.shots_done)} of {counted(found.shots, 'picture')}",
     ]
     if found.damaged:
-        lines.append(f"{len(found.damaged)} damaged ({found.damaged[0]}), which realcam job work does again")
+        lines.append(f"{len(found.damaged)} damaged ({found.damaged[0]}), which realcam job work will repeat")
     if found.is_done:
         lines.append("done")
     elif found.seconds_left < float("inf"):
@@ -203,20 +210,21 @@ def finish(
             "--output",
             "-o",
             metavar="FILE",
-            help="Of one picture, .exr, .png, .jpg, .tif or .webp, may be repeated; a folder for all of them; or a "
-            "film of them, .mp4",
+            help="For one picture: a file .exr, .png, .jpg, .tif or .webp, may be repeated; for several: a folder, or "
+            "a video, .mp4",
         ),
     ],
     format: Annotated[
         str, typer.Option("--format", metavar="NAME", help="Format of pictures in a folder: exr, png, jpg, tif or webp")
     ] = "exr",
-    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second of a film")] = 24.0,
+    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second of a video")] = 24.0,
     device: Annotated[
-        str | None, typer.Option("--device", metavar="DEVICE", help="For layers of single rays [that of the job]")
+        str | None,
+        typer.Option("--device", metavar="DEVICE", help="Device for layers without samples [that of the job]"),
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Add up the units of a job, and write its pictures. The same command writes them again."""
+    """Add up the units of a job and write its pictures. The command may be repeated."""
     from ..files import remove_leftovers
     from ..job import Job
 
@@ -224,12 +232,12 @@ def finish(
     job = Job.load(folder)
     remove_leftovers(job.path)
     if [path.suffix.lower() for path in output] == [".mp4"]:
-        _write_film(job, output[0], fps, device, quiet)
+        _write_video(job, output[0], fps, device, quiet)
     else:
         _write_pictures(job, _picture_files(job, output, format), device, quiet)
 
 
-def _write_film(job: Job, path: Path, fps: float, device: str | None, quiet: bool) -> None:
+def _write_video(job: Job, path: Path, fps: float, device: str | None, quiet: bool) -> None:
     from .. import files
     from ..video import write_video
 
@@ -240,7 +248,7 @@ def _write_film(job: Job, path: Path, fps: float, device: str | None, quiet: boo
 
 
 def _picture_files(job: Job, output: list[Path], format: str) -> dict[str, list[Path]]:
-    """Into which files each picture goes. Makes the folder that `output` may be."""
+    """Returns the files to write for each picture, by its name. Creates the folder if `output` is one."""
     from .. import files
 
     is_file = [path.suffix.lower() in (".exr", *DEVELOPED) for path in output]
@@ -277,13 +285,14 @@ def _named_shots(paths: list[Path], changes: Any, device: str) -> dict[str, Shot
 
 
 def _developed(job: Job, device: str | None, bar: Callable[[float], bool]) -> Iterator[np.ndarray]:
-    """All pictures, one after the other, as 8-bit sRGB."""
+    """Yields all pictures in order, as 8-bit sRGB arrays."""
     for done, name in enumerate(job.names):
         bar(done / len(job.names))
         yield job.image(name, device=device).developed(tone=job.tone(name))
 
 
 def _part(text: str | None) -> tuple[int, int] | None:
+    """Converts "K/N". Raises InputError."""
     if text is None:
         return None
     found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
@@ -293,6 +302,7 @@ def _part(text: str | None) -> tuple[int, int] | None:
 
 
 def _tile(text: str | None) -> tuple[int, int] | None:
+    """Converts the width and height of a tile in pixels. Raises InputError."""
     if text is None:
         return None
     across, _, down = text.partition("x")

@@ -1,4 +1,4 @@
-"""realcam lens: look at lenses."""
+"""The commands `realcam lens ...`: lists, drawings, figures, analyses and conversions of lenses."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from .commands_in_cpp import add_command_in_cpp
 from .completions import completion_of
 from .grouped_options import grouped
 
-app = typer.Typer(help="Look at lenses.", rich_markup_mode=None)
+app = typer.Typer(help="Inspect, compare, convert and improve lenses.", rich_markup_mode=None)
 
 Circle = Annotated[
     float | None,
     typer.Option(
-        "--circle-of-confusion", metavar="MM", help="Largest blur that is sharp, in mm [the film's diagonal / 1500]"
+        "--circle-of-confusion", metavar="MM", help="Largest blur that counts as sharp [the film's diagonal / 1500]"
     ),
 ]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; what is infinite or does not exist is null")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; infinite and missing values are null")]
 
 
 app.command("list")(lens_list.list_lenses)
@@ -59,8 +59,8 @@ def draw(
         str,
         typer.Option(
             metavar="WHICH",
-            help="rows: zoom positions, or farthest and nearest focus, one below the other; ghost: the nearest "
-            "focus as outlines in the same drawing; one: as --focus says",
+            help="rows: zoom positions, or farthest and nearest focus, one below the other; ghost: the lens at its "
+            "nearest focus as outlines in the same drawing; one: the lens as the options set it",
         ),
     ] = "one",
     file: lens_options.File,
@@ -73,11 +73,11 @@ def draw(
         raise InputError(f'--states: "{states:.40}" is unknown; expected one, rows or ghost')
     if states == "rows" and (rings.focus is not None or fields_deg is not None):
         raise InputError(
-            "--states rows shows focus states or zoom positions, by shares of the film: --focus and "
-            "--fields-deg do not go with it"
+            "--states rows shows focus states or zoom positions, with fields relative to the film's corner: --focus "
+            "and --fields-deg cannot be combined with it"
         )
     lens = rings.set(file.lens(name))
-    target = output or lens_options.output_of(name, ".svg")
+    target = output or lens_options.default_output(name, ".svg")
     lens_options.check_not_the_lens(target, name)
     drawn: dict[str, Any] = {
         "rays": rays,
@@ -92,7 +92,7 @@ def draw(
         ghost = None
         if states == "ghost":
             if not lens.nearest_focus_m > 0:
-                raise InputError(f'--states ghost: the file of lens "{lens.name}" names no nearest focus')
+                raise InputError(f'--states ghost: the file of lens "{lens.name}" does not specify a nearest focus')
             ghost = lens.focused(lens.nearest_focus_m)
         angles = lens_options.numbers(fields_deg, "--fields-deg")
         save_cross_section(lens, target, plane=plane, fields_deg=angles, ghost=ghost, **drawn)
@@ -111,7 +111,7 @@ def photo(
         typer.Option(
             "--exposure-time",
             metavar="TIME",
-            help="Exposure time in seconds, 1/125 or 0.008: also print exposure values",
+            help="Exposure time in seconds, 1/125 or 0.008; prints exposure values, too",
         ),
     ] = None,
     iso: Annotated[float, typer.Option("--iso", metavar="ISO", help="Sensitivity, for exposure values")] = 100.0,
@@ -146,7 +146,7 @@ def compare(
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", metavar="FILE", help="Also draw both at one scale: .svg, .pdf, .png, .jpg, .tif or .webp"
+            "--output", "-o", metavar="FILE", help="Drawing of both at one scale: .svg, .pdf, .png, .jpg, .tif or .webp"
         ),
     ] = None,
     rings: lens_options.Rings,
@@ -154,7 +154,7 @@ def compare(
     mtf: Annotated[
         str | None,
         typer.Option(
-            "--mtf", metavar="PER_MM", help="Also the MTF at these frequencies, in periods per mm: 10,30. Takes seconds"
+            "--mtf", metavar="PER_MM", help="Frequencies of the MTF in periods per mm: 10,30. Takes seconds [no MTF]"
         ),
     ] = None,
     look: lens_options.Look,
@@ -162,7 +162,7 @@ def compare(
     as_json: AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
-    """Print figures of two lenses side by side, at the same focus and stop if these are given, and draw both."""
+    """Print figures of two lenses side by side, and draw both. Options for focus and f-number apply to both."""
     from ..photography import lens_summary
 
     lenses = [rings.set(file.lens(name)) for name in (first, second)]

@@ -1,4 +1,4 @@
-"""realcam lens photo and compare: figures of lenses as text and JSON."""
+"""Tables of the commands `realcam lens photo` and `realcam lens compare`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Rows = list[tuple[str, str]]
 
 
 def photo_rows(figures: PhotographicFigures) -> Rows:
-    """Rows of the table that `lens photo` prints."""
+    """Returns the rows, (name, value), of the table that `lens photo` prints."""
     f, dof, breath = figures, figures.depth_of_field, figures.breathing
     formula, real = "  by formula", "  by real rays"
     rows: Rows = [
@@ -46,7 +46,7 @@ def photo_rows(figures: PhotographicFigures) -> Rows:
         ("hyperfocal distance", ""),
         (real, _metres(dof.real_hyperfocal_m)),
         (formula, _metres(dof.formula_hyperfocal_m)),
-        ("blur in focus", f"{number_text(1000 * dof.blur_in_focus_mm, 3)} um, of aberrations"),
+        ("blur in focus", f"{number_text(1000 * dof.blur_in_focus_mm, 3)} um, by aberrations"),
     ]
     if f.exposure is not None:
         e = f.exposure
@@ -61,7 +61,7 @@ def photo_rows(figures: PhotographicFigures) -> Rows:
 
 
 def summary_rows(summary: LensSummary) -> Rows:
-    """Column of the table that `lens compare` prints, with the same rows for every lens."""
+    """Returns the rows, (name, value), of a lens in the table of `lens compare`; all lenses have the same names."""
     f, dof = summary.figures, summary.figures.depth_of_field
     rows: Rows = [
         ("focus", _metres(f.focus_distance_m)),
@@ -96,7 +96,7 @@ def summary_rows(summary: LensSummary) -> Rows:
 
 
 def print_columns(titles: list[str], rows: list[Rows]) -> None:
-    """Rows of the same names side by side."""
+    """Prints tables side by side, whose rows have the same names. titles: heading of each table's column of values."""
     names = [name for name, _ in rows[0]]
     columns = [[title, *(value for _, value in column)] for title, column in zip(titles, rows, strict=True)]
     widths = [max(map(len, ["", *names])), *(max(map(len, column)) for column in columns)]
@@ -111,6 +111,7 @@ def _focal_length(figures: PhotographicFigures) -> str:
 
 
 def _metres(value: float) -> str:
+    """Formats a length in metres; nan means that there is none."""
     if math.isnan(value):
         return "none"
     return number_text(value) + (" m" if math.isfinite(value) else "")

@@ -1,4 +1,4 @@
-"""realcam lens image: a picture as a lens images it."""
+"""The command `realcam lens image`: simulates the image of a flat picture through a lens."""
 
 from __future__ import annotations
 
@@ -30,29 +30,38 @@ def image(
     ] = None,
     height: Annotated[
         float | None,
-        typer.Option("--height", metavar="METRES", help="The picture's height, of an object at a finite distance"),
+        typer.Option(
+            "--height", metavar="METRES", help="Height of the picture in metres, for an object at a finite distance"
+        ),
     ] = None,
     projection: Annotated[
         str | None,
         typer.Option(
             "--projection",
             metavar="NAME",
-            help="tangent: a flat object; angle: distances from the picture's centre are field angles [angle beyond "
-            "70 degrees]",
+            help="tangent (r = f tan): a flat object; angle (r = f theta): distances from the picture's centre are "
+            "field angles [angle beyond 70 degrees]",
         ),
     ] = None,
     resolution: Annotated[
-        str | None, typer.Option("--resolution", metavar="WxH", help="The film's pixels [the picture's]")
+        str | None, typer.Option("--resolution", metavar="WxH", help="Number of pixels of the film [as the picture]")
     ] = None,
     pixel: Annotated[
-        float | None, typer.Option("--pixel", metavar="UM", help="Their pitch in um [fits the film]")
+        float | None, typer.Option("--pixel", metavar="UM", help="Pixel pitch in um [fits the film]")
     ] = None,
     crop: Annotated[
         str | None,
-        typer.Option("--crop", metavar="X,Y,W,H", help="Only these pixels of the film: left, top, width, height"),
+        typer.Option(
+            "--crop", metavar="X,Y,W,H", help="Part of the film to compute, in pixels: left, top, width, height [all]"
+        ),
     ] = None,
     flip: Annotated[
-        str, typer.Option("--flip", metavar="NAME", help="none, horizontal, vertical, or both: as it lies on the film")
+        str,
+        typer.Option(
+            "--flip",
+            metavar="NAME",
+            help="none, horizontal, vertical, or both: upside down and mirrored, as on the film",
+        ),
     ] = "none",
     falloff: Annotated[bool, typer.Option(help="Include relative illumination")] = True,
     psfs: Annotated[
@@ -75,7 +84,7 @@ def image(
     lens_options.check_not_the_lens(files.check_target(output, DEVELOPED), name)
     lens = rings.set(file.lens(name))
     with progress_bar("image simulation", is_shown=not quiet) as bar:
-        seen = image_simulation(
+        simulated = image_simulation(
             lens,
             picture,
             height_deg=height_deg,
@@ -91,13 +100,13 @@ def image(
             wavelengths_nm=lens_options.numbers(wavelengths, "--wavelengths"),
             progress=bar,
         )
-    seen.save(output, psfs=psfs)
+    simulated.save(output, psfs=psfs)
     options.say_written(output, quiet)
 
 
-def _whole_numbers(text: str, option: str, between: str, count: int) -> tuple[int, ...]:
-    """Raises InputError."""
-    words = text.split(between)
+def _whole_numbers(text: str, option: str, separator: str, count: int) -> tuple[int, ...]:
+    """Converts `count` whole numbers with a separator between them. Raises InputError."""
+    words = text.split(separator)
     if len(words) != count or not all(word.strip().isdecimal() and len(word) < 9 for word in words):
-        raise InputError(f'{option}: "{text:.40}": expected {count} whole numbers with "{between}" between')
+        raise InputError(f'{option}: "{text:.40}": expected {count} whole numbers with "{separator}" between')
     return tuple(map(int, words))

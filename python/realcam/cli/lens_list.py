@@ -1,4 +1,4 @@
-"""realcam lens list: the lenses that have names, and a choice of them."""
+"""The command `realcam lens list`: lists bundled lenses and those of the lens path, with filters."""
 
 from __future__ import annotations
 
@@ -18,7 +18,11 @@ from . import lens_options, options
 
 @dataclass(frozen=True)
 class ListedLens:
-    """focal_lengths_mm: the shortest and the longest, which differ if the lens zooms. file: None for a bundled lens."""
+    """Row of the list.
+
+    focal_lengths_mm: the shortest and the longest, which differ if the lens zooms. year: None if unknown. file: None
+    for a bundled lens.
+    """
 
     name: str
     title: str
@@ -33,16 +37,20 @@ class ListedLens:
 def list_lenses(
     words: Annotated[
         list[str] | None,
-        typer.Argument(metavar="TEXT", help="Words that name, title or source of a lens contain [all lenses]"),
+        typer.Argument(metavar="TEXT", help="Words that the name, title or source of a lens must contain [all lenses]"),
     ] = None,
     focal_length: Annotated[
         str | None,
-        typer.Option("--focal-length", "--focal", metavar="MM", help="About 50, or 35-70; zooms that reach it count"),
+        typer.Option(
+            "--focal-length", "--focal", metavar="MM", help="Focal length, 50 or 35-70; zoom lenses must include it"
+        ),
     ] = None,
     f_number: Annotated[
-        str | None, typer.Option("--f-number", metavar="N", help="As fast as f/N or faster; or between two: 1.4-2.8")
+        str | None, typer.Option("--f-number", metavar="N", help="Largest f-number, or a range: 1.4-2.8")
     ] = None,
-    kind: Annotated[str | None, typer.Option("--kind", metavar="NAME", help=f"{', '.join(KINDS)}")] = None,
+    kind: Annotated[
+        str | None, typer.Option("--kind", metavar="NAME", help=f"Kind of lens: {', '.join(KINDS)}")
+    ] = None,
     lens_path: lens_options.LensPath = None,
     as_json: options.AsJson = False,
 ) -> None:
@@ -66,7 +74,7 @@ def list_lenses(
     if as_json:
         typer.echo(json_text(lenses))
     elif not lenses:
-        raise InputError("no lens is like this; realcam lens list shows all")
+        raise InputError("no lens matches; realcam lens list shows all")
     else:
         _print(lenses)
 
@@ -79,8 +87,8 @@ def _all_lenses() -> list[ListedLens]:
             try:
                 listed.append(_listed(name, os.fsencode(file).decode(errors="replace")))
             except RealcamError as error:
-                said = one_line(os.fsencode(f"{file} is left out: {error}").decode(errors="replace"))
-                typer.echo(f"realcam: warning: {said}", err=True)
+                message = one_line(os.fsencode(f"{file} is left out: {error}").decode(errors="replace"))
+                typer.echo(f"realcam: warning: {message}", err=True)
     return listed
 
 
@@ -100,6 +108,7 @@ def _listed(name: str, file: str | None = None) -> ListedLens:
 
 
 def _range(text: str | None, option: str) -> tuple[float, float] | None:
+    """Converts a number, or two with a minus between them. Raises InputError."""
     if text is None:
         return None
     first, _, last = text.partition("-")
@@ -111,7 +120,10 @@ def _range(text: str | None, option: str) -> tuple[float, float] | None:
 
 
 def _kinds(word: str | None) -> list[str]:
-    """Those whose names contain the word: "wide" is "wide angle" and "very wide angle"."""
+    """Returns the kinds whose names contain the word ("wide" selects "wide angle" and "very wide angle"); None: all.
+
+    Raises InputError if there are none.
+    """
     known = [kind for kind in KINDS if word is None or word.replace("-", " ").lower() in kind]
     return known or [options.known_word(word or "", KINDS, "kind")]
 

@@ -25,27 +25,25 @@ LensName = Annotated[
 LensNames = Annotated[
     list[str] | None,
     typer.Argument(
-        help="Lenses, bundled or files [all that are bundled]", metavar="LENS", autocompletion=completion_of("LENS")
+        help="Bundled lenses or lens files [all bundled lenses]", metavar="LENS", autocompletion=completion_of("LENS")
     ),
 ]
-Rays = Annotated[int, typer.Option(metavar="N", help="Rays of each bundle", min=0, max=101)]
+Rays = Annotated[int, typer.Option(metavar="N", help="Number of rays per field point", min=0, max=101)]
 RaysFrom = Annotated[
     str,
-    typer.Option(
-        "--rays-from", metavar="WHERE", help="object: bundles of points of it; film: what points of the film send out"
-    ),
+    typer.Option("--rays-from", metavar="WHERE", help="Origin of the rays: object: object points; film: film points"),
 ]
 Fields = Annotated[
     str,
-    typer.Option("--fields", metavar="SHARES", help="Field points, relative to the height of the film's corner"),
+    typer.Option("--fields", metavar="SHARES", help="Field points, as fractions of the film's half diagonal"),
 ]
 FieldsDeg = Annotated[
     str | None,
     typer.Option(
-        "--fields-deg", metavar="DEGREES", help="Field points as angles in front of the lens, in degrees, instead"
+        "--fields-deg", metavar="DEGREES", help="Field points as angles in front of the lens, instead of --fields"
     ),
 ]
-ThemeName = Annotated[str, typer.Option("--theme", metavar="NAME", help="light or dark")]
+ThemeName = Annotated[str, typer.Option("--theme", metavar="NAME", help="Colour theme: light or dark")]
 Zoom = Annotated[
     str | None, typer.Option("--zoom", metavar="NAME", help="Zoom position, by its name in `realcam lens info`")
 ]
@@ -55,7 +53,7 @@ LensPath = Annotated[
     list[str] | None,
     typer.Option(
         "--lens-path",
-        help="A folder whose lens files are known by their names; may be repeated [REALCAM_LENS_PATH]",
+        help="Folder in which lenses are found by name; may be repeated [REALCAM_LENS_PATH]",
         metavar="DIR",
     ),
 ]
@@ -63,14 +61,14 @@ LensPath = Annotated[
 
 @dataclass(frozen=True)
 class File:
-    """How the file of a lens is read."""
+    """Options for reading a lens file."""
 
     glass: Annotated[
         list[str] | None,
         typer.Option(
             "--glass",
-            help="A glass that the lens's file names and no catalogue has, or several: NAME=n_d,V_d or NAME=schott:F4; "
-            "may be repeated",
+            help="Definition of a glass in the lens file that no catalogue, or more than one, contains: NAME=n_d,V_d "
+            "or NAME=schott:F4; may be repeated",
             metavar="NAME=N,V",
         ),
     ] = None
@@ -78,19 +76,19 @@ class File:
         list[str] | None,
         typer.Option(
             "--glass-catalogue",
-            help="A catalogue of glasses (.agf) for those that the lens's file names; may be repeated",
+            help="Glass catalogue (.agf) that takes precedence over the bundled ones; may be repeated",
             metavar="FILE",
         ),
     ] = None
     lens_path: LensPath = None
     force: Annotated[
-        bool, typer.Option("--force", help="Leave out what the lens's file has that there is no model of, and name it")
+        bool, typer.Option("--force", help="Ignore unsupported features of the lens file, with a warning")
     ] = False
     pbrt_thickness: Annotated[
         str | None,
         typer.Option(
             "--pbrt-thickness",
-            help="Where a thickness in a .dat file stands: after or before the surface of its row [by the first row]",
+            help="Whether a thickness in a .dat file lies after or before the surface of its row [by the first row]",
             metavar="WHERE",
         ),
     ] = None
@@ -99,7 +97,8 @@ class File:
         return self.lens_and_light(name)[0]
 
     def lens_and_light(self, name: str) -> tuple[Lens, list[float], list[float]]:
-        """The lens, and the field angles in degrees and the wavelengths in nm that another program's file states."""
+        """Returns the lens, and the field angles in degrees and the wavelengths in nm that another program's file
+        specifies."""
         add_to_lens_path(self.lens_path)
         return Lens._load_with_light(
             name,
@@ -112,13 +111,14 @@ class File:
 
 @dataclass(frozen=True)
 class Rings:
-    """How the rings of a lens are set."""
+    """Options for the aperture, focus and zoom rings of a lens."""
 
     f_number: Annotated[
         float | None, typer.Option("--f-number", metavar="N", help="Close the diaphragm to this f-number")
     ] = None
     focus: Annotated[
-        str | None, typer.Option("--focus", metavar="METRES", help="Object plane to film in metres, or inf")
+        str | None,
+        typer.Option("--focus", metavar="METRES", help="Distance from the object plane to the film in metres, or inf"),
     ] = None
     zoom: Zoom = None
 
@@ -129,7 +129,7 @@ class Rings:
 
 @dataclass(frozen=True)
 class Look:
-    """How lenses are drawn."""
+    """Options for drawing lenses."""
 
     wavelengths: Annotated[
         str | None,
@@ -150,7 +150,7 @@ class Look:
     ] = 1600
 
     def arguments(self) -> dict[str, Any]:
-        """Keyword arguments for the functions of realcam.drawing."""
+        """Returns keyword arguments for the functions of realcam.drawing."""
         return {
             "wavelengths_nm": numbers(self.wavelengths, "--wavelengths"),
             "radius_colours": self.radius_colours,
@@ -164,17 +164,18 @@ SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")  # of supp
 
 
 def add_to_lens_path(folders: Sequence[str] | None) -> None:
-    """Puts folders before those of REALCAM_LENS_PATH. Raises InputError."""
+    """Inserts folders in front of those of REALCAM_LENS_PATH. Raises InputError if one does not exist."""
     for folder in folders or ():
         if not Path(folder).is_dir():
             raise InputError(f"--lens-path: {folder} is no folder")
-    before = os.environ.get("REALCAM_LENS_PATH")
+    previous = os.environ.get("REALCAM_LENS_PATH")
     if folders:
-        os.environ["REALCAM_LENS_PATH"] = ":".join([*folders, *([before] if before else [])])
+        os.environ["REALCAM_LENS_PATH"] = ":".join([*folders, *([previous] if previous else [])])
 
 
 def lens_files_on_path() -> dict[str, Path]:
-    """Lens files in the folders of REALCAM_LENS_PATH by name, as Lens.load finds them."""
+    """Returns the lens files in the folders of REALCAM_LENS_PATH by name; of several with a name, the one that
+    Lens.load finds."""
     files: dict[str, Path] = {}
     for folder in filter(None, os.environ.get("REALCAM_LENS_PATH", "").split(":")):
         for path in sorted(Path(folder).iterdir()) if Path(folder).is_dir() else ():
@@ -183,30 +184,31 @@ def lens_files_on_path() -> dict[str, Path]:
     return {name: files[name] for name in sorted(files.keys() - lens_names())}
 
 
-def output_of(name: str, suffix: str) -> Path:
-    """A file here, by what the user called the lens: the name that stands in a lens's file may be any text."""
+def default_output(name: str, suffix: str) -> Path:
+    """Returns a file name in the current folder for output about a lens. name: lens as the user typed it, because the
+    name in a lens file may be any text."""
     file = Path(name)
     stem = file.stem if file.suffix.lower() in SUFFIXES else file.name
     return Path(f"{stem or 'lens'}{suffix}")
 
 
 def check_not_the_lens(target: Path, *names: str) -> None:
-    """Raises InputError where what is written would go over the file of a lens that it is about."""
+    """Raises InputError if the output file is the file of one of these lenses."""
     for name in names:
         if Path(name).is_file() and target.exists() and target.samefile(name):
             raise InputError(f"{target}: is the lens file itself; choose another name")
 
 
 def numbers(text: str | None, option: str) -> list[float] | None:
-    """Numbers with commas between them. Raises InputError."""
+    """Converts numbers with commas between them; None stays None. Raises InputError."""
     return None if text is None else [options.number(word.strip(), option) for word in text.split(",")]
 
 
 def seconds(text: str) -> float:
-    """A time, 0.008 or 1/125. Raises InputError."""
-    above, slash, below = text.partition("/")
-    value = options.number(above, "--exposure-time")
-    divisor = options.number(below, "--exposure-time") if slash else 1.0
+    """Converts a time in seconds, 0.008 or 1/125. Raises InputError."""
+    numerator, slash, denominator = text.partition("/")
+    value = options.number(numerator, "--exposure-time")
+    divisor = options.number(denominator, "--exposure-time") if slash else 1.0
     if divisor == 0:
         raise InputError(f'--exposure-time: "{text}" divides by 0')
     return value / divisor

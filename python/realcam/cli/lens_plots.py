@@ -1,4 +1,4 @@
-"""realcam lens plot and realcam lens report: what a lens does to light."""
+"""The commands `realcam lens plot` and `realcam lens report`: analyses of a lens as plots, numbers and reports."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ObjectDistance = Annotated[
     typer.Option(
         "--object-distance",
         metavar="METRES",
-        help="Object plane to front vertex in metres, or inf [the plane in focus]",
+        help="Distance from the object plane to the front vertex in metres, or inf [the plane in focus]",
     ),
 ]
 Fields = Annotated[
@@ -39,13 +39,13 @@ Wavelengths = Annotated[
 
 
 def register(app: typer.Typer) -> None:
-    """Adds the commands to those of lenses."""
+    """Adds the commands to the group `realcam lens`."""
     app.command("plot")(grouped(plot))
     app.command("report")(grouped(report))
 
 
 def plot(
-    kind: Annotated[str, typer.Argument(help="What to plot: one of those above", metavar="KIND")],
+    kind: Annotated[str, typer.Argument(help="Kind of plot, one of those above", metavar="KIND")],
     name: Annotated[
         str | None,
         typer.Argument(
@@ -73,7 +73,7 @@ def plot(
         typer.Option(
             "--frequencies",
             metavar="PER_MM",
-            help="Of MTF, in periods per mm, with commas between; of `mtf`, the highest",
+            help="Frequencies of the MTF in periods per mm, separated by commas; for `mtf`, the highest frequency",
         ),
     ] = None,
     method: Annotated[
@@ -81,16 +81,17 @@ def plot(
         typer.Option(
             "--method",
             metavar="NAME",
-            help="mtf, mtf-field, mtf-focus: diffraction or geometric (rays alone). psf: direct, fft or geometric",
+            help="For mtf, mtf-field and mtf-focus: diffraction or geometric (rays alone). For psf: direct, fft or "
+            "geometric",
         ),
     ] = None,
     object_distance: ObjectDistance = None,
     theme: lens_options.ThemeName = "light",
-    size: Annotated[str, typer.Option("--size", metavar="NAME", help="small or large")] = "large",
+    size: Annotated[str, typer.Option("--size", metavar="NAME", help="Size of the plot: small or large")] = "large",
     as_json: Annotated[bool, typer.Option("--json", help="Print the numbers as JSON")] = False,
     quiet: options.Quiet = False,
 ) -> None:
-    """Plot one thing about a lens, or write its numbers.
+    """Plot one analysis of a lens, or write its numbers.
 
     KIND: ray-fan, spot, spot-through-focus, longitudinal, field-curves, distortion, distortion-grid, lateral-colour,
     seidel, wavefront, zernike, psf, mtf, mtf-field, mtf-focus, relative-illumination, pupil, bokeh,
@@ -111,7 +112,7 @@ def plot(
         lens_options.check_not_the_lens(target, name)
     lens = rings.set(file.lens(name))
     bundles = analysis.Bundles(lens, _distance(object_distance))
-    asked = kinds.Asked(
+    request = kinds.Asked(
         lens,
         bundles,
         _numbers(fields, "--fields-deg"),
@@ -119,7 +120,7 @@ def plot(
         _numbers(frequencies, "--frequencies"),
         method,
     )
-    data = kinds.compute(kind, asked)
+    data = kinds.compute(kind, request)
     for target in targets:
         if target.suffix.lower() in numbers.FORMATS:
             numbers.save_numbers(data, target)
@@ -148,22 +149,27 @@ def report(
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Write all about a lens on four pages: the lens, rays, contrast and colour, waves and light.
+    """Write a report about a lens on four pages: the lens, rays, contrast and colour, waves and light.
 
-    Where no option says others, fields and wavelengths are those of another program's file, three of each, if it states
-    a field off the axis and several wavelengths.
+    For the file of another program that specifies an off-axis field or several wavelengths, the report uses three of
+    them, unless options specify others.
     """
     from ..analysis import save_report
     from ..analysis.fields import three_of
 
-    stated, file_fields, file_wavelengths = file.lens_and_light(name)
-    lens = rings.set(stated)
+    lens_of_file, file_fields, file_wavelengths = file.lens_and_light(name)
+    lens = rings.set(lens_of_file)
     fields_deg, wavelengths_nm = _numbers(fields, "--fields-deg"), _numbers(wavelengths, "--wavelengths")
-    if fields_deg is None and lens.is_rotational and lens.zoom_position == stated.zoom_position and any(file_fields):
+    if (
+        fields_deg is None
+        and lens.is_rotational
+        and lens.zoom_position == lens_of_file.zoom_position
+        and any(file_fields)
+    ):
         fields_deg = three_of([0.0, *file_fields])
     if wavelengths_nm is None and len(file_wavelengths) > 1:
         wavelengths_nm = three_of(file_wavelengths, lens.wavelength_nm)
-    target = output or lens_options.output_of(name, ".pdf")
+    target = output or lens_options.default_output(name, ".pdf")
     lens_options.check_not_the_lens(target, name)
     save_report(
         lens,
@@ -176,8 +182,8 @@ def report(
     options.say_written(target, quiet)
 
 
-def _numbers(text: str | None, what: str) -> NDArray[np.float64] | None:
-    values = lens_options.numbers(text, what)
+def _numbers(text: str | None, option: str) -> NDArray[np.float64] | None:
+    values = lens_options.numbers(text, option)
     return None if values is None else np.array(values)
 
 

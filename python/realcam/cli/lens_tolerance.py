@@ -1,4 +1,4 @@
-"""realcam lens tolerance: what leaves the factory."""
+"""The command `realcam lens tolerance`: Monte Carlo tolerance analysis of a lens."""
 
 from __future__ import annotations
 
@@ -24,12 +24,20 @@ def tolerance(
     grade: Annotated[
         str, typer.Option("--grade", metavar="NAME", help="Grade of all tolerances: commercial, precision or high")
     ] = "commercial",
-    output: Annotated[Path | None, typer.Option("--output", "-o", metavar="FILE", help="A report, .html")] = None,
-    copies: Annotated[int, typer.Option("--copies", metavar="N", help="Number of copies")] = 1000,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="File for a report, .html")
+    ] = None,
+    copies: Annotated[
+        int, typer.Option("--copies", metavar="N", help="Number of copies of the lens with random errors")
+    ] = 1000,
     seed: Annotated[int, typer.Option("--seed", metavar="N", help="Seed; the same seed makes the same copies")] = 0,
     compensate: Annotated[
         str,
-        typer.Option("--compensate", metavar="WHAT", help="refocus, film_tilt, both separated by a comma, or nothing"),
+        typer.Option(
+            "--compensate",
+            metavar="WHAT",
+            help="Compensators: refocus, film_tilt, both separated by a comma, or nothing",
+        ),
     ] = "refocus",
     distribution: Annotated[
         str,
@@ -46,7 +54,9 @@ def tolerance(
     at_least: Annotated[
         float | None,
         typer.Option(
-            "--at-least", metavar="MTF", help="Least MTF of the worst field, for the yield [half of that as drawn]"
+            "--at-least",
+            metavar="MTF",
+            help="Smallest acceptable MTF of the worst field, for the yield [half of the nominal lens's]",
         ),
     ] = None,
     rings: lens_options.Rings,
@@ -68,6 +78,7 @@ def tolerance(
 
     tolerances = Tolerances.grade(grade, distribution=distribution)
     words = [word.strip() for word in compensate.split(",")]
+    # "nothing" is valid alone, but not in a list.
     known = (*NAMES, "nothing") if len(words) == 1 else NAMES
     compensators = [options.known_word(word, known, "compensator") for word in words if word != "nothing" or words[1:]]
     check_distribution(distribution)
@@ -84,35 +95,37 @@ def tolerance(
             frequencies_per_mm=None if frequency is None else [frequency],
             progress=bar,
         )
-    wanted = 0.5 * study.nominal_measure("lowest_mtf") if at_least is None else at_least
-    share = study.yield_of(lowest_mtf=wanted)
+    min_mtf = 0.5 * study.nominal_measure("lowest_mtf") if at_least is None else at_least
+    yield_share = study.yield_of(lowest_mtf=min_mtf)
     if output is not None:
         from ..tolerance.report import save_tolerance_report  # brings matplotlib
 
         save_tolerance_report(study, output, theme=theme)
     if as_json:
-        typer.echo(json_text({**study.summary(), "grade": grade, "yield": {"lowest_mtf": wanted, "share": share}}))
+        yields = {"lowest_mtf": min_mtf, "share": yield_share}
+        typer.echo(json_text({**study.summary(), "grade": grade, "yield": yields}))
         return
     if quiet:
         return
     if not study.is_whole:
         typer.echo(f"ended after {number_text(len(study))} of {number_text(copies)} copies")
-    _print(study, wanted, share)
+    _print(study, min_mtf, yield_share)
     if output is not None:
         options.say_written(output)
 
 
-def _print(study: ToleranceStudy, wanted: float, share: float) -> None:
+def _print(study: ToleranceStudy, min_mtf: float, yield_share: float) -> None:
+    """Prints a table of measures: value of the nominal lens, and quantiles over all copies."""
     from ..tolerance.plots import MEASURES, with_limit
 
     typer.echo(f"MTF at {number_text(study.frequencies_per_mm[study.main])} periods per mm")
-    typer.echo(f"{'':26}{'as drawn':>10}{'10% below':>12}{'half below':>12}{'90% below':>12}")
-    for measure, words in MEASURES.items():
+    typer.echo(f"{'':26}{'nominal':>10}{'10% below':>12}{'50% below':>12}{'90% below':>12}")
+    for measure, name in MEASURES.items():
         scale = 100 if measure == "distortion" else 1
         low, middle, high = scale * study.quantiles(measure, [0.1, 0.5, 0.9])
-        drawn = scale * study.nominal_measure(measure)
-        typer.echo(f"{words:26}{drawn:10.4f}{low:12.4f}{middle:12.4f}{high:12.4f}")
-    typer.echo(f"yield with an MTF of {wanted:.3g} in the worst field: {percent_text(share, 3)}")
+        nominal = scale * study.nominal_measure(measure)
+        typer.echo(f"{name:26}{nominal:10.4f}{low:12.4f}{middle:12.4f}{high:12.4f}")
+    typer.echo(f"yield with an MTF of {min_mtf:.3g} in the worst field: {percent_text(yield_share, 3)}")
     typer.echo("worst offenders, mean MTF lost at the limit:")
     for offender in study.worst_offenders(8):
         typer.echo(f"  {offender.loss:7.4f}  {with_limit(offender)}")

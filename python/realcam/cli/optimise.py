@@ -1,4 +1,4 @@
-"""realcam lens optimise: a lens made sharper, within bounds."""
+"""The command `realcam lens optimise`: minimises the spots of a lens by least squares within bounds."""
 
 from __future__ import annotations
 
@@ -24,35 +24,37 @@ if TYPE_CHECKING:
     from ..optimisation.operands import Operand
     from ..optimisation.optimiser import Optimisation
 
-WAYS = ("radii", "thicknesses", "conics")
-COLOURS_NM = (486.1327, 587.5618, 656.2725)
+VARIABLE_GROUPS = ("radii", "thicknesses", "conics")
+COLOURS_NM = (486.1327, 587.5618, 656.2725)  # the lines F, d and C
 
 
 @dataclass(frozen=True)
 class Bounds:
-    """Bounds of the variables, mm."""
+    """Options for the bounds of the variables, in mm."""
 
     least_radius: Annotated[float, typer.Option(metavar="MM", help="Smallest radius", min=0)] = 0.0
     least_thickness: Annotated[float, typer.Option(metavar="MM", help="Smallest air thickness")] = 0.1
     least_glass: Annotated[
-        float, typer.Option(metavar="MM", help="Smallest glass thickness, unless it is thinner already")
+        float, typer.Option(metavar="MM", help="Smallest glass thickness, or that of the input lens if it is smaller")
     ] = 1.0
     most_thickness: Annotated[
-        float | None, typer.Option(metavar="MM", help="Largest thickness [three times the largest]")
+        float | None, typer.Option(metavar="MM", help="Largest thickness [three times the largest of the input lens]")
     ] = None
     least_edge: Annotated[
-        float | None, typer.Option(metavar="MM", help="Smallest edge thickness of glass [0.5, or as it is]")
+        float | None,
+        typer.Option(
+            metavar="MM", help="Smallest edge thickness of glass [0.5, or that of the input lens if it is smaller]"
+        ),
     ] = None
 
     def least_thickness_of(self, lens: Lens, surface: int) -> float:
-        """Lower bound of the thickness behind a surface."""
-        behind = lens.surfaces[surface]
-        is_glass = behind.type == "refracting" and behind.material.index(lens.wavelength_nm) > 1.1
-        return (
-            max(self.least_thickness, min(self.least_glass, behind.thickness_mm)) if is_glass else self.least_thickness
-        )
+        """Returns the lower bound of the thickness behind a surface. surface: index from 0."""
+        s = lens.surfaces[surface]
+        is_glass = s.type == "refracting" and s.material.index(lens.wavelength_nm) > 1.1
+        return max(self.least_thickness, min(self.least_glass, s.thickness_mm)) if is_glass else self.least_thickness
 
     def most_thickness_of(self, lens: Lens) -> float:
+        """Returns the upper bound of all thicknesses."""
         return self.most_thickness or 3 * max(abs(s.thickness_mm) for s in lens.surfaces)
 
 
@@ -66,8 +68,8 @@ def optimise(
         typer.Option(
             "--vary",
             metavar="WHAT",
-            help="radii, thicknesses, conics, or one of them: radius:2, thickness:3, conic:2, aspheric:2:4 (surface "
-            "as lens info counts them, power); may be repeated [radii]",
+            help="Variables: radii, thicknesses, conics, or a single one: radius:2, thickness:3, conic:2, aspheric:2:4 "
+            "(number of the surface from 1, power); may be repeated [radii]",
         ),
     ] = None,
     fields_deg: Annotated[
@@ -79,7 +81,7 @@ def optimise(
         ),
     ] = None,
     focal_length: Annotated[
-        float | None, typer.Option("--focal-length", metavar="MM", help="Target focal length [as it is]")
+        float | None, typer.Option("--focal-length", metavar="MM", help="Target focal length [that of the input lens]")
     ] = None,
     bounds: Bounds,
     most_distortion: Annotated[
@@ -91,18 +93,20 @@ def optimise(
             min=0,
         ),
     ] = None,
-    glasses: Annotated[bool, typer.Option("--glasses", help="Look for better glasses in the catalogue, too")] = False,
+    glasses: Annotated[bool, typer.Option("--glasses", help="Search the catalogue for better glasses, too")] = False,
     global_looks: Annotated[
         int,
         typer.Option("--global", metavar="N", help="Number of lenses sampled over the bounds before the search", min=0),
     ] = 0,
-    steps: Annotated[int, typer.Option(metavar="N", help="Steps of the search", min=1, max=10000)] = 50,
+    steps: Annotated[
+        int, typer.Option(metavar="N", help="Largest number of optimisation steps", min=1, max=10000)
+    ] = 50,
     rings: lens_options.Rings,
     file: lens_options.File,
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
-    """Make the spots of a lens smaller, by least squares within bounds. Ctrl-C ends it with the best lens so far."""
+    """Minimise the spots of a lens by least squares within bounds. Ctrl-C ends the search with the best lens so far."""
     from .. import files
     from ..optimisation.glass_search import with_better_glasses
     from ..optimisation.operands import Operand
@@ -110,11 +114,11 @@ def optimise(
 
     lens_options.check_not_the_lens(files.check_target(output, (".toml", ".zmx", ".seq")), name)
     if glasses and global_looks:
-        raise InputError("--glasses and --global cannot go together")
-    lens, stated_deg, _ = file.lens_and_light(name)
+        raise InputError("--glasses and --global cannot be combined")
+    lens, file_fields_deg, _ = file.lens_and_light(name)
     lens = rings.set(lens)
     variables = [v for text in vary or ["radii"] for v in _variables_of(text, lens, bounds)]
-    fields = tuple(lens_options.numbers(fields_deg, "--fields-deg") or stated_deg or _fields(lens))
+    fields = tuple(lens_options.numbers(fields_deg, "--fields-deg") or file_fields_deg or _fields(lens))
     operands = _edges(lens, bounds.least_edge)
     if most_distortion is not None:
         outermost = max(fields, key=abs)
@@ -137,12 +141,12 @@ def optimise(
             return bar(min(1.0, count / expected))
 
         found: Optimisation | GlassSearch
-        changed: Mapping[int, str] = {}
+        new_glasses: Mapping[int, str] = {}
         if glasses:
             found = searched = with_better_glasses(
                 lens, variables, targets, most_steps=min(steps, 10), progress=report, answers_interrupt=True
             )
-            changed = searched.glasses
+            new_glasses = searched.glasses
         else:
             found = optimised(
                 lens,
@@ -154,22 +158,23 @@ def optimise(
                 answers_interrupt=True,
             )
     found.lens.save(output)
-    if stated_deg and output.suffix.lower() != ".toml":
+    if file_fields_deg and output.suffix.lower() != ".toml":
         warnings.warn(f"{output}: the fields and wavelengths of {name} are not written; set them again", stacklevel=1)
     if as_json or not quiet:
-        _print(found, changed, output, as_json)
+        _print(found, new_glasses, output, as_json)
     options.say_written(output, quiet or as_json)
     if found.message == "interrupted":
         raise typer.Exit(130)
 
 
 def _variables_of(text: str, lens: Lens, bounds: Bounds) -> list[Variable]:
+    """Returns the variables that a value of --vary names. Raises InputError."""
     kind, *numbers = text.split(":")
-    if text in WAYS:
-        return [variable for i in range(len(lens.surfaces)) for variable in _of_surface(i, text, lens, bounds)]
+    if text in VARIABLE_GROUPS:
+        return [v for i in range(len(lens.surfaces)) for v in _surface_variables(i, text, lens, bounds)]
     if len(numbers) != {"radius": 1, "thickness": 1, "conic": 1, "aspheric": 2}.get(kind):
         raise InputError(
-            f'--vary: "{text}": expected {", ".join(WAYS)}, radius:2, thickness:3, conic:2 or aspheric:2:4'
+            f'--vary: "{text}": expected {", ".join(VARIABLE_GROUPS)}, radius:2, thickness:3, conic:2 or aspheric:2:4'
         )
     try:
         number, *power = [int(part) for part in numbers]
@@ -188,20 +193,24 @@ def _variables_of(text: str, lens: Lens, bounds: Bounds) -> list[Variable]:
     return [Variable.aspheric(surface, *power)]
 
 
-def _of_surface(i: int, way: str, lens: Lens, bounds: Bounds) -> Iterator[Variable]:
+def _surface_variables(i: int, group: str, lens: Lens, bounds: Bounds) -> Iterator[Variable]:
+    """Yields the variable of surface i, from 0, in one of VARIABLE_GROUPS, if it has one."""
     surface = lens.surfaces[i]
-    bends = surface.type in ("refracting", "mirror") and surface.curvature_per_mm != 0
-    if way == "radii" and bends:
+    is_curved = surface.type in ("refracting", "mirror") and surface.curvature_per_mm != 0
+    if group == "radii" and is_curved:
         yield Variable.radius(i, bounds.least_radius)
-    elif way == "conics" and bends:
+    elif group == "conics" and is_curved:
         yield Variable.conic(i)
-    elif way == "thicknesses" and i + 1 < len(lens.surfaces) and surface.thickness_mm > bounds.least_thickness:
+    elif group == "thicknesses" and i + 1 < len(lens.surfaces) and surface.thickness_mm > bounds.least_thickness:
         most = max(bounds.most_thickness_of(lens), 1.001 * surface.thickness_mm)
         yield Variable.thickness(i, bounds.least_thickness_of(lens, i), most)
 
 
 def _edges(lens: Lens, least: float | None) -> list[Operand]:
-    """No glass becomes thinner at its edge; `least` in mm, None: than 0.5, or than it is."""
+    """Returns operands that bound the edge thickness of each glass from below.
+
+    least: bound in mm; None: 0.5, or the present edge thickness if that is smaller.
+    """
     from ..optimisation.operands import Operand
 
     operands = []
@@ -214,7 +223,7 @@ def _edges(lens: Lens, least: float | None) -> list[Operand]:
 
 
 def _fields(lens: Lens) -> tuple[float, ...]:
-    """The axis, 0.7 and all of the image height."""
+    """Returns the field angles in degrees of the axis, and of 0.7 and 1 times the image height."""
     from ..fields import fields_at
 
     return tuple(field.angle_deg for field in fields_at(lens, (0.0, 0.7, 1.0)))

@@ -13,12 +13,12 @@ import typer
 
 from .._core import InputError, Lens, LensFileError, _did_you_mean
 from ..number_text import number_text
-from .command_words import spelled
+from .command_words import in_known_spelling
 from .completions import completion_of
 
 SHOT_HELP = "A shot file (.toml), a scene file (.obj, .gltf, .glb or .ply), or the name of a bundled shot: demo"
 ShotName = Annotated[Path, typer.Argument(help=SHOT_HELP, metavar="SCENE")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings and errors alone")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print only warnings and errors")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
 Device = Annotated[
     str,
@@ -28,27 +28,28 @@ Device = Annotated[
         autocompletion=completion_of("DEVICE"),
     ),
 ]
-Threads = Annotated[int, typer.Option(metavar="N", help="0: all", min=0, max=4096)]
+Threads = Annotated[int, typer.Option(metavar="N", help="Number of threads; 0: all", min=0, max=4096)]
 
 
 def say_written(target: Path, quiet: bool = False) -> None:
+    """Prints that a file was written, unless quiet."""
     if not quiet:
         typer.echo(f"wrote {os.fsencode(target).decode(errors='replace')}")
 
 
-def number(text: str, what: str, wanted: str = "a number") -> float:
-    """A number, or inf. Raises InputError."""
+def number(text: str, option: str, expected: str = "a number") -> float:
+    """Converts a number, or inf. option, expected: for the message. Raises InputError."""
     try:
         value = float(text)
     except ValueError:
         value = math.nan
     if math.isnan(value):
-        raise InputError(f'{what}: "{text}" is not {wanted}')
+        raise InputError(f'{option}: "{text}" is not {expected}')
     return value
 
 
 def frame_numbers(text: str) -> range:
-    """The numbers of frames: 7, 1-240, or 1-240x10 for every tenth. Raises InputError."""
+    """Converts the numbers of frames: 7, 1-240, or 1-240x10 for every tenth frame. Raises InputError."""
     found = re.fullmatch(r"(\d{1,6})(?:-(\d{1,6})(?:x(\d{1,6}))?)?", text)
     step = int(found[3] or 1) if found else 0
     numbers = range(int(found[1]), int(found[2] or found[1]) + 1, step) if found and step else None
@@ -58,25 +59,25 @@ def frame_numbers(text: str) -> range:
 
 
 def known_word(word: str, known: Iterable[str], what: str) -> str:
-    """Returns the listed spelling of a word; American spellings are known.
+    """Returns a word in the spelling of the list `known`; American spellings are accepted.
 
-    Raises InputError, with similar words, if the word is not listed.
+    what: kind of word, for the message. Raises InputError, with similar words, if the word is not listed.
     """
     names = list(known)
-    if (listed := spelled(word, names)) in names:
+    if (listed := in_known_spelling(word, names)) in names:
         return listed
     raise InputError(f'unknown {what} "{word:.40}"{_did_you_mean(word, names)}; expected one of {", ".join(names)}')
 
 
 def glasses(texts: Sequence[str]) -> dict[str, tuple[float, float] | float | str]:
-    """Glasses as the command line names them: NAME=n_d,V_d, NAME=n or NAME=schott:F4. Raises InputError."""
+    """Converts glasses, NAME=n_d,V_d, NAME=n or NAME=schott:F4, to a dict for Lens.load. Raises InputError."""
     result: dict[str, tuple[float, float] | float | str] = {}
     for text in texts:
         name, equals, glass = text.partition("=")
         if not (name and equals and glass):
             raise InputError(f'--glass: "{text}": expected NAME=n_d,V_d or NAME=MAKER:GLASS')
         if name in result:
-            raise InputError(f'--glass: the glass "{name}" is given twice')
+            raise InputError(f'--glass: the glass "{name}" is specified twice')
         n_d, comma, v_d = glass.partition(",")
         if comma:
             result[name] = (number(n_d, "--glass"), number(v_d, "--glass"))
@@ -86,7 +87,7 @@ def glasses(texts: Sequence[str]) -> dict[str, tuple[float, float] | float | str
 
 
 def advice_on(error: LensFileError) -> str:
-    """Names the option that avoids the error, as the end of the error's message; empty if there is no such option."""
+    """Returns the end of the error's message that names the option which avoids the error; empty if there is none."""
     if error.can_be_forced:
         return "; --force reads it all the same"
     if not error.glass:
@@ -95,7 +96,7 @@ def advice_on(error: LensFileError) -> str:
 
 
 def title_of(lens: Lens) -> str:
-    """A line over a plot: the lens, its focal length and its f-number."""
+    """Returns the title of a plot: the lens, its focal length and its f-number."""
     data = lens.first_order()
     focal_length, f_number = number_text(data.effective_focal_length_mm), number_text(lens.f_number, 3)
     text = f"{lens.title or lens.name}   f = {focal_length} mm, f/{f_number}"

@@ -1,4 +1,4 @@
-"""realcam sensor: look at sensors. realcam expose: from film to raw."""
+"""The commands `realcam sensor ...`, which describe sensors, and `realcam expose`, which simulates one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..number_text import number_text, percent_text
 from . import options
 from .completions import completion_of
 
-app = typer.Typer(help="Look at sensors.", rich_markup_mode=None)
+app = typer.Typer(help="List and describe image sensors.", rich_markup_mode=None)
 
 SensorName = Annotated[
     str,
@@ -42,7 +42,7 @@ def list_sensors(as_json: options.AsJson = False) -> None:
 
 @app.command("info")
 def info(name: SensorName, as_json: options.AsJson = False) -> None:
-    """Print what a sensor does, where it is from, and what had to be assumed."""
+    """Print the properties of a sensor, their source, and what had to be assumed."""
     sensor = Sensor.load(name)
     lowest, highest = sensor.iso_range()
     if as_json:
@@ -75,14 +75,16 @@ def info(name: SensorName, as_json: options.AsJson = False) -> None:
 
 
 def expose(
-    film: Annotated[Path, typer.Argument(help="The film's exposure: an .exr of `realcam render`", metavar="FILM")],
+    film: Annotated[
+        Path, typer.Argument(help="Exposure of the film: an .exr file written by `realcam render`", metavar="FILM")
+    ],
     output: Annotated[
         list[Path],
         typer.Option(
             "--output",
             "-o",
             metavar="FILE",
-            help="Raw as .dng or .npy, developed as .png, .jpg, .tif or .webp; may be repeated",
+            help="Raw values as .dng or .npy, developed picture as .png, .jpg, .tif or .webp; may be repeated",
         ),
     ],
     sensor: Annotated[
@@ -110,13 +112,15 @@ def expose(
         ),
     ] = None,
     tone: Annotated[
-        str, typer.Option(metavar="CURVE", help="Tone curve, developed: linear (clipped) or film")
+        str, typer.Option(metavar="CURVE", help="Tone curve of the developed picture: linear (clipped) or film")
     ] = "linear",
-    demosaic: Annotated[str, typer.Option(metavar="NAME", help="Developed, by menon, malvar or bilinear")] = "menon",
+    demosaic: Annotated[
+        str, typer.Option(metavar="NAME", help="Demosaicing of the developed picture: menon, malvar or bilinear")
+    ] = "menon",
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
-    """Expose a sensor to a film: raw numbers with the sensor's noise, and a picture developed from them."""
+    """Simulate a sensor in the place of a film: raw values with its noise, and a picture developed from them."""
     from ..demosaicing import METHODS
     from ..files import check_target
     from ..image_file import DEVELOPED, read_film
@@ -131,12 +135,15 @@ def expose(
     for option, word, known in (("--tone", tone, ("linear", "film")), ("--demosaic", demosaic, METHODS)):
         if word not in known:
             raise InputError(f'{option}: "{word:.60}" is unknown; expected {", ".join(known)}')
-    chosen = Sensor.load(sensor)
+    loaded_sensor = Sensor.load(sensor)
     pixels, entries = read_film(film)
-    if chosen.angular_response:
-        warnings.warn("the film does not tell where its exit pupil was: all angles count alike", stacklevel=1)
+    if loaded_sensor.angular_response:
+        warnings.warn(
+            "the film's file does not contain the position of the exit pupil; the sensor's angular response is ignored",
+            stacklevel=1,
+        )
     raw = exposed_film(
-        chosen,
+        loaded_sensor,
         pixels,
         _film_of(film, entries, pixels),
         exposure_time_s=_number(film, entries, "realcam:exposure_time_s"),
@@ -149,32 +156,33 @@ def expose(
     )
     for path in output:
         raw.save(path, tone=tone, demosaic=demosaic)
-    full = float(np.mean(raw.mosaic >= raw.white_level_dn))
+    saturated = float(np.mean(raw.mosaic >= raw.white_level_dn))  # fraction of the pixels
     if as_json:
         figures = {
-            "sensor": chosen.name,
+            "sensor": loaded_sensor.name,
             "iso": raw.iso,
             "gain_dn_per_e": raw.gain_dn_per_e,
             "black_level_dn": raw.black_level_dn,
             "white_level_dn": raw.white_level_dn,
-            "full_share": full,
-            "assumptions": chosen.assumptions,
+            "full_share": saturated,
+            "assumptions": loaded_sensor.assumptions,
             "files": [os.fsencode(path).decode(errors="replace") for path in output],
         }
         typer.echo(json_text(figures))
     if as_json or quiet:
         return
     typer.echo(
-        f"{chosen.name}, ISO {raw.iso:.4g}: {raw.gain_dn_per_e:.4g} DN/e, black {raw.black_level_dn:g}, "
-        f"white {number_text(raw.white_level_dn)} DN, {percent_text(full)} of the pixels full"
+        f"{loaded_sensor.name}, ISO {raw.iso:.4g}: {raw.gain_dn_per_e:.4g} DN/e, black {raw.black_level_dn:g}, "
+        f"white {number_text(raw.white_level_dn)} DN, {percent_text(saturated)} of the pixels full"
     )
-    for assumption in chosen.assumptions:
+    for assumption in loaded_sensor.assumptions:
         typer.echo(f"assumed: {assumption}")
     for path in output:
         options.say_written(path)
 
 
 def _film_of(path: Path, entries: dict[str, str], pixels: np.ndarray) -> Film:
+    """Returns the film that a file's metadata describe. Raises InputError if its size is missing."""
     size = entries.get("realcam:film_mm", "").split("x")
     try:
         width, height = (float(word) for word in size)
@@ -184,6 +192,7 @@ def _film_of(path: Path, entries: dict[str, str], pixels: np.ndarray) -> Film:
 
 
 def _number(path: Path, entries: dict[str, str], name: str) -> float:
+    """Returns a positive number of a file's metadata. Raises InputError if it is missing or invalid."""
     text = entries.get(name, "")
     try:
         number = float(text)

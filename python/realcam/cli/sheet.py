@@ -16,8 +16,8 @@ from ..analysis.style import new_figure, themed
 from ..drawing.figure_files import check_figure_target, save_figure
 from ..image import Image
 
-DPI = 160
-FONT_PT = 7.0
+DPI = 160  # pixels of a picture per inch of the sheet
+FONT_PT = 7.0  # size of the labels
 
 
 def save_sheet(
@@ -43,14 +43,15 @@ def save_labelled(
     *,
     theme: str = "light",
 ) -> None:
-    """Writes a sheet of developed pixels, (rows, columns, 3). Otherwise like save_sheet()."""
+    """Writes a sheet of labelled pictures that are developed already, arrays (rows, columns, 3); see save_sheet()."""
     target = check_figure_target(path)
     if not pictures or columns < 1:
         raise InputError("a sheet needs at least one picture and one column")
     columns = min(columns, len(pictures))
     rows = math.ceil(len(pictures) / columns)
     width, height = (max(size) / DPI for size in zip(*(pixels.shape[1::-1] for _, pixels in pictures), strict=True))
-    letters = max(8, int(width * 72 / (0.6 * FONT_PT)))  # per line, of average width
+    # Letters per line: the average width of a letter is 0.6 times the font size. Lengths in inches, 72 points each.
+    letters = max(8, int(width * 72 / (0.6 * FONT_PT)))
     labels = [_wrapped(label, letters) for label, _ in pictures]
     gap, line = 0.12, 0.1 + 1.3 * FONT_PT / 72 * (1 + max(label.count("\n") for label in labels))
     size = columns * (width + gap) + gap, rows * (height + line + gap) + gap

@@ -1,4 +1,4 @@
-"""The options that say what is photographed and how, which all commands that take a shot share (cpp/shot/shot_keys)."""
+"""The command line options that describe a shot, from the table of shot keys (cpp/shot/shot_keys.cpp)."""
 
 from __future__ import annotations
 
@@ -15,30 +15,31 @@ from .completions import completion_of
 
 
 def shot_options(name: str, without: Collection[str] = (), panels: Collection[str] | None = None) -> type:
-    """A group of options (grouped_options), but for those of some keys, which a command decides itself.
+    """Returns a dataclass of options for grouped(), with one field for each shot key.
 
-    panels: only those with these headings in help texts.
+    name: name of the dataclass. without: keys that the command sets itself. panels: headings of the help to whose
+    options the group is restricted; None: all.
     """
     group = []
     for key, option, panel, placeholder, text in _core._shot_keys():
         if option is None or key in without or (panels is not None and panel not in panels):
             continue
-        wanted = typer.Option(
+        declared = typer.Option(
             option,
             metavar=placeholder,
             help=text,
             rich_help_panel=panel,
             autocompletion=completion_of(placeholder),
         )
-        group.append((key, Annotated[str | None, wanted], None))
+        group.append((key, Annotated[str | None, declared], None))
     return make_dataclass(name, group, frozen=True)
 
 
 def load_shot(path: Path, options: Any, device: str) -> Shot:
-    """Loads a shot with the values of the options in place of its own."""
+    """Loads a shot file; values of the options override those of the file."""
     return shot_with_words(path, words_of(options), device)
 
 
 def words_of(options: Any) -> dict[str, str]:
-    """Returns the options that were given, by their keys."""
-    return {key: word for key, word in asdict(options).items() if word is not None}
+    """Returns the values of the options that the user specified, by shot key."""
+    return {key: value for key, value in asdict(options).items() if value is not None}

@@ -1,4 +1,4 @@
-"""Messages about mistakes in a command line, in the words of the commands in C++."""
+"""Messages about mistakes in a command line, in the format of the commands in C++."""
 
 from __future__ import annotations
 
@@ -8,25 +8,28 @@ from typing import Any
 import typer
 
 from .._core import _did_you_mean
-from .command_words import Grammar, spelled, understood
+from .command_words import Grammar, in_known_spelling, normalised
 
 # click's UsageError: newer versions of typer bundle click under a private name.
 UsageError: Any = typer.BadParameter.__bases__[0]
 
 
 def check_usage(command: Any) -> None:
-    """Has a command understand words as people write them, raise UsageError where an option stands twice that counts
-    once, of which click takes the last, and has its errors know the command and the word that is wrong."""
+    """Replaces the parser of a click command by one that normalises the words and checks them more strictly.
+
+    It raises UsageError if an option that may be used once is specified twice (click would silently use the last
+    value), and its errors have the command as `ctx` and the wrong word as `word`.
+    """
     parse = command.parse_args
 
     def parse_strictly(context: Any, words: list[str]) -> Any:
-        given: dict[str, Any] = {}
-        if below := getattr(command, "commands", None):
-            words = [spelled(word, below) for word in words[:1]] + words[1:]
+        values: dict[str, Any] = {}
+        if subcommands := getattr(command, "commands", None):
+            words = [in_known_spelling(word, subcommands) for word in words[:1]] + words[1:]
         elif not context.resilient_parsing:
-            words = understood(words, _grammar_of(command, context))
+            words = normalised(words, _grammar_of(command, context))
         try:
-            given, _, order = command.make_parser(context).parse_args(args=list(words))
+            values, _, order = command.make_parser(context).parse_args(args=list(words))
             for parameter in order:
                 if order.count(parameter) > 1 and not parameter.multiple and not getattr(parameter, "is_flag", True):
                     raise UsageError(f"{max(parameter.opts, key=len)} is given more than once")
@@ -34,7 +37,7 @@ def check_usage(command: Any) -> None:
         except UsageError as error:
             error.ctx = error.ctx or context
             if parameter := getattr(error, "param", None):
-                error.word = given.get(parameter.name)
+                error.word = values.get(parameter.name)
             raise
 
     command.parse_args = parse_strictly
@@ -66,7 +69,8 @@ def usage_message(error: Any) -> str:
 
 
 def _what_is_wrong(error: Any, commands: dict[str, Any] | None) -> str:
-    said: str = error.message.rstrip(".")
+    """Describes the mistake. commands: subcommands of the command, by name; None if it has none."""
+    said: str = error.message.rstrip(".")  # click's message
     if option := getattr(error, "option_name", None):
         if said.startswith("No such option"):
             return f"unknown option {option}{_did_you_mean(_plain(option), _options_of(error.ctx))}"
@@ -89,12 +93,12 @@ def _what_is_wrong(error: Any, commands: dict[str, Any] | None) -> str:
 
 
 def _options_of(context: Any) -> list[str]:
-    """Long names: who mistypes one letter means anything."""
+    """Returns the long names of a command's options. A mistyped one-letter option could mean any of them."""
     parameters = context.command.get_params(context) if context else []
     names = (name for parameter in parameters for name in (*parameter.opts, *parameter.secondary_opts))
     return [name for name in names if name.startswith("--")]
 
 
 def _plain(word: str) -> str:
-    """Without the bytes that are no UTF-8."""
+    """Replaces bytes that are not valid UTF-8 by "?"."""
     return word.encode(errors="replace").decode()

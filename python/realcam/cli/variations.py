@@ -17,14 +17,14 @@ NAMES = ("f_number", "lens", "zoom")
 
 @dataclass(frozen=True)
 class Variation:
-    """label: the varied value, as a caption."""
+    """A varied shot. label: the varied value, as a caption."""
 
     label: str
     shot: Shot
 
 
 def variations(shot: Shot, name: str, values: Sequence[str]) -> list[Variation]:
-    """Returns the shot with each of the values, the exposure time scaled for equal brightness.
+    """Returns the shot with each of the values; the exposure time is scaled for equal brightness.
 
     name: "f_number", at an unchanged camera position; "lens" (names or files) or "zoom" (positions), for which the
     camera moves along its axis until the subject in focus has the same width on the film as before. Lenses keep the
@@ -36,8 +36,8 @@ def variations(shot: Shot, name: str, values: Sequence[str]) -> list[Variation]:
     result = []
     for value in values:
         camera = make(shot.camera, value)
-        was, now = shot.camera.lens.f_number, camera.lens.f_number
-        camera = camera.replace(exposure_time_s=shot.camera.exposure_time_s * (now / was) ** 2)
+        f_number_ratio = camera.lens.f_number / shot.camera.lens.f_number
+        camera = camera.replace(exposure_time_s=shot.camera.exposure_time_s * f_number_ratio**2)
         result.append(Variation(_label_of(camera, name), replace(shot, camera=camera)))
     return result
 
@@ -62,26 +62,27 @@ def _zoomed(camera: Camera, value: str) -> Camera:
 
 
 def _framed_alike(camera: Camera, lens: Lens) -> Camera:
+    """Returns the camera with another lens, moved along its axis so that the subject in focus keeps its width."""
     focus_m = camera.lens.focus_distance_m
     if not math.isfinite(focus_m):
         raise InputError(
             "the shot is focused at infinity; specify focus_m of its subject, so that it can be framed alike"
         )
-    eye = np.array(camera.position)
-    ahead = np.array(camera.look_at) - eye
-    ahead /= np.linalg.norm(ahead)
-    subject = eye + focus_m * ahead
+    position = np.array(camera.position)
+    forward = np.array(camera.look_at) - position
+    forward /= np.linalg.norm(forward)
+    subject = position + focus_m * forward
     width_m = (focus_m - _behind_pupil_m(camera.lens)) * _half_width(camera)
     distance_m = focus_m
     # Fixed-point iteration: focusing changes the angle of view a little, and so the distance.
     for _ in range(4):
         framed = camera.replace(lens=lens.focused(distance_m))
         distance_m = width_m / _half_width(framed) + _behind_pupil_m(framed.lens)
-    return framed.replace(position=tuple(subject - distance_m * ahead), look_at=tuple(subject))
+    return framed.replace(position=tuple(subject - distance_m * forward), look_at=tuple(subject))
 
 
 def _half_width(camera: Camera) -> float:
-    """Half the horizontal field of view at a distance of 1 from the entrance pupil."""
+    """Returns half the width of the horizontal field of view at a distance of 1 from the entrance pupil."""
     angle_deg = camera.field_of_view_deg.horizontal
     if angle_deg >= 170:
         raise InputError(f"{camera.lens.name} sees {angle_deg:.0f} degrees, too wide to frame the shot alike")
@@ -89,7 +90,7 @@ def _half_width(camera: Camera) -> float:
 
 
 def _behind_pupil_m(lens: Lens) -> float:
-    """Distance from the entrance pupil to the film, m. Focus distances are measured from the film."""
+    """Returns the distance from the entrance pupil to the film in m. Focus distances are measured from the film."""
     pupil_mm = lens.first_order().entrance_pupil_position_mm
     return 1e-3 * (lens.film_position_mm - pupil_mm) if math.isfinite(pupil_mm) else 0.0
 

@@ -1,4 +1,4 @@
-"""realcam view: the lens bench in the browser."""
+"""The command `realcam view`: starts the lens bench in the browser."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def view(
     shot: Annotated[Path | None, typer.Argument(help=f"{options.SHOT_HELP} [demo]", metavar="SCENE")] = None,
     folder: Annotated[
         list[Path] | None,
-        typer.Option(help="Folder that the page may read and write, besides the current one", show_default=False),
+        typer.Option(help="Additional folder that the page may read and write", show_default=False),
     ] = None,
     host: Annotated[str, typer.Option(help="Address to serve at")] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port to serve at", min=1, max=65535)] = 8080,

@@ -32,11 +32,12 @@ def make(
 ) -> Path:
     """Generates the missing pictures of a data set, and returns the path of its index, dataset.json.
 
-    executor: each of its processes renders one picture at a time, on one core, on this machine or others that can
+    executor: each of its processes renders one picture at a time, on one core, on this machine or on others that can
     access the same folder; None: processes of this machine, one per core, or a single one for a GPU. device: as in
     render. progress: called with the fraction done; the work stops if it returns False.
-    Pictures and shards are written atomically, so that make() can continue after any interruption. Raises InputError,
-    DeviceError, and ImageFileError, if a disk is full, say; finished pictures remain.
+    Pictures and shards are written atomically, so that make() can continue after any interruption.
+
+    Raises InputError, DeviceError, and ImageFileError, for example if a disk is full. Finished pictures remain.
     """
     demosaicing.check_is_installed()  # before the first picture, not after it
     target = DatasetFolder.open(folder, recipe)
@@ -51,7 +52,9 @@ def make(
                 concurrent.futures.ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
             )
         if executor is not None:
-            _work_with(executor, target, missing, "cuda" if on_gpu and device == "auto" else device, on_gpu, progress)
+            _make_missing(
+                executor, target, missing, "cuda" if on_gpu and device == "auto" else device, on_gpu, progress
+            )
     for shard in target.shards:
         target.write_shard(shard)
     target.write_index()
@@ -60,7 +63,7 @@ def make(
     return target.path / "dataset.json"
 
 
-def _work_with(
+def _make_missing(
     executor: concurrent.futures.Executor,
     target: DatasetFolder,
     missing: list[int],
@@ -69,21 +72,21 @@ def _work_with(
     progress: ProgressCallback | None,
 ) -> None:
     folder, count, threads = str(target.path.absolute()), target.recipe.count, 0 if on_gpu else 1
-    left = missing
+    remaining = missing
 
-    def wanted() -> list[int] | None:
-        nonlocal left
-        left = target.not_done(left)
-        return left or None
+    def unfinished() -> list[int] | None:
+        nonlocal remaining
+        remaining = target.not_done(remaining)
+        return remaining or None
 
     def submit(number: int) -> concurrent.futures.Future[Outcome]:
         return executor.submit(_make_one, target.recipe, folder, number, device, threads)
 
     def report() -> None:
-        if progress is not None and progress(1 - len(target.not_done(left)) / count) is False:
+        if progress is not None and progress(1 - len(target.not_done(remaining)) / count) is False:
             raise InputError(f"{target.path}: stopped; start again to go on")
 
-    do_all(wanted, submit, window=_WINDOW, report=report, location=str(target.path), noun="picture")
+    do_all(unfinished, submit, window=_WINDOW, report=report, location=str(target.path), noun="picture")
 
 
 def _make_one(recipe: Recipe, folder: str, number: int, device: str, threads: int) -> Outcome:

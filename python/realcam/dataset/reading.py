@@ -21,8 +21,11 @@ def samples(folder: str | os.PathLike[str], shards: slice = slice(None)) -> Iter
 
     Each has "__key__", a string; "png", (H, W, 3) uint8; "json", a mapping; and, depending on the recipe's labels,
     "mask.png", (H, W) uint8, object ids; "depth.npy", (H, W) float32, metres; "motion.npy" and "flow.npy", (H, W, 2)
-    float32, pixels; "next.png", like "png"; "flow_visible.png", (H, W) uint8, 0 or 255.
-    shards: selects shards of the folder; slice(worker, None, workers) divides them among workers. Raises InputError.
+    float32, pixels; "next.png", like "png"; "flow_visible.png", (H, W) uint8, 255 where the point is visible in the
+    next picture and 0 elsewhere. shards: selects shards of the folder; slice(worker, None, workers) divides them among
+    workers.
+
+    Raises InputError.
     """
     paths = sorted(Path(folder).glob("shard-*.tar"))
     if not paths:

@@ -14,25 +14,29 @@ import numpy as np
 
 from .._core import InputError, Sensor, _did_you_mean, _read_toml
 
-MOVES_FOR_S = 1.0  # duration of all motion in a scene; every exposure and every next picture lies within it
+MOVES_FOR_S = 1.0  # duration of all motion in a scene, in seconds; every exposure and next picture must lie within it
 LABELS = ("depth", "mask", "motion", "flow")
 # File names have six digits for the picture's number; beyond the other limits a picture takes hours.
-_MOST = {"count": 10**6, "size": 32768, "objects": 1000, "board": 1000, "spp": 1 << 24, "shard_size": 10**6}
+_MAX = {"count": 10**6, "size": 32768, "objects": 1000, "board": 1000, "spp": 1 << 24, "shard_size": 10**6}
 
 
 @dataclass(frozen=True)
 class Recipe:
-    """Parameters of a data set. A pair of numbers is a range that is sampled uniformly.
+    """Parameters of a data set. A pair of numbers is a range that is sampled uniformly, except that of iso.
 
-    count: number of pictures. size: columns and rows. seed: the same recipe and seed give the same pictures. lenses:
-    names or files. f_stops: factors of the lens's f-number. objects: number of objects in a scene. models:
-    files of the objects (.glb, .obj, ...) by category, scaled to one metre; {}: boxes, balls and pyramids. speed_m_s:
-    speed of the objects along the floor. camera_speed_m_s, camera_turn_deg_s: speed and angular speed of the camera, in
-    any direction and about any axis. next_after_s: time from a picture to the next one, which is the target of the
-    flow. readout_time_s: of a rolling shutter. iso, sensor: of the camera. board: columns and rows of squares of a
-    calibration board in each scene; (): no board. square_m: side of its squares. labels: additional outputs out of
-    depth, mask, motion and flow; flow also writes the next picture. spp: samples per pixel. shard_size: pictures per
-    tar file. Raises InputError.
+    count: number of pictures. size: columns and rows of a picture. seed: the same recipe and seed give the same
+    pictures. lenses: names or files; one is chosen at random for each picture. f_stops: range of the factor, 1 or more,
+    by which the lens's f-number is multiplied. objects: range of the number of objects in a scene. models: files of the
+    objects (.glb, .obj, ...) by category, scaled so that their largest extent is one metre before each object gets its
+    own size; {}: boxes, balls and pyramids. speed_m_s: speed of the objects along the floor, in m/s. camera_speed_m_s,
+    camera_turn_deg_s: speed in m/s and angular speed in degrees/s of the camera, in a random direction and about a
+    random axis. next_after_s: time from a picture to the next one, which is the target of the flow. readout_time_s: of
+    a rolling shutter; 0: all rows are exposed at once. iso: range, whose logarithm is sampled uniformly. sensor: name
+    or file of the camera's sensor. board: columns and rows of squares of a calibration board in each scene; (): no
+    board. square_m: side of its squares, in metres. labels: additional outputs, any of depth, mask, motion and flow;
+    flow also writes the next picture. spp: samples per pixel. shard_size: pictures per tar file.
+
+    Raises InputError.
     """
 
     count: int = 200
@@ -57,13 +61,13 @@ class Recipe:
 
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
-            object.__setattr__(self, name, _as(kind, name, getattr(self, name)))
+            object.__setattr__(self, name, _converted(kind, name, getattr(self, name)))
         for name in ("count", "spp", "shard_size", "square_m", "next_after_s"):
             if not getattr(self, name) > 0:
                 raise InputError(f"{name} must be above 0")
-        for name, most in _MOST.items():
-            if max(np.atleast_1d(getattr(self, name)), default=0) > most:
-                raise InputError(f"{name} must be {most} or less")
+        for name, limit in _MAX.items():
+            if max(np.atleast_1d(getattr(self, name)), default=0) > limit:
+                raise InputError(f"{name} must be {limit} or less")
         if min(self.size) < 1 or min(self.objects) < 1 or self.seed < 0 or self.readout_time_s < 0:
             raise InputError("size and objects must be 1 or more, seed and readout_time_s 0 or more")
         for name in ("f_stops", "objects", "speed_m_s", "camera_speed_m_s", "camera_turn_deg_s", "iso"):
@@ -83,7 +87,7 @@ class Recipe:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Recipe:
-        """Reads a recipe; paths in it are relative to its folder. Raises InputError naming file, line and key."""
+        """Reads a recipe. Paths in it are relative to its folder. Raises InputError naming file, line and key."""
         name = os.fspath(path)
         try:
             text = Path(path).read_text(encoding="utf-8")
@@ -115,7 +119,7 @@ class Recipe:
 
     @property
     def categories(self) -> tuple[str, ...]:
-        """Categories of the objects, in the order of their COCO ids, from 1."""
+        """Categories of the objects, in the order of their COCO ids, which start at 1."""
         return tuple(self.models) or ("box", "ball", "pyramid")
 
 
@@ -124,7 +128,7 @@ _KINDS: dict[str, str] = {
 }
 
 
-def _as(kind: str, name: str, value: Any) -> Any:
+def _converted(kind: str, name: str, value: Any) -> Any:
     """Converts a value to the type of its field. Raises InputError."""
     if kind == "texts by name":
         if isinstance(value, Mapping) and all(isinstance(v, str) for pair in value.items() for v in pair):
@@ -133,7 +137,7 @@ def _as(kind: str, name: str, value: Any) -> Any:
         element, second = kind[6:-1].split(", ")
         items = [value, value] if second != "..." and isinstance(value, int | float) else value
         if isinstance(items, list | tuple) and (second == "..." or len(items) == 2):
-            return tuple(_as(element, name, item) for item in items)
+            return tuple(_converted(element, name, item) for item in items)
     elif kind == "float" and isinstance(value, int | float) and not isinstance(value, bool):
         if abs(value) < float("inf"):
             return float(value)
@@ -141,10 +145,10 @@ def _as(kind: str, name: str, value: Any) -> Any:
         kind == "str" and isinstance(value, str)
     ):
         return value
-    words = {"int": "a whole number", "float": "a number", "str": "a text"}
-    wanted = (
-        words.get(kind)
+    nouns = {"int": "a whole number", "float": "a number", "str": "a text"}
+    expected = (
+        nouns.get(kind)
         or {"i": "whole numbers", "f": "numbers", "s": "texts", "t": "texts by name"}[kind.removeprefix("tuple[")[0]]
     )
     count = "two " if kind.startswith("tuple[") and not kind.endswith("...]") else ""
-    raise InputError(f"{name} must be {count}{wanted}; it is {value!r:.40}")
+    raise InputError(f"{name} must be {count}{expected}; it is {value!r:.40}")

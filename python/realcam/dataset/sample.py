@@ -19,8 +19,8 @@ from .recipe import Recipe
 from .scenes import RandomScene, random_camera, random_scene
 
 LAYERS = {"depth": "depth_middle", "mask": "object_id", "motion": "motion"}
-SEEDS_APART = 2**31  # difference of the seeds of a picture and the next one, whose noise must be independent
-WIDEST_PLANE_DEG = 120.0  # largest diagonal field of view that is fitted with a model of the angle's tangent
+SEED_OFFSET = 2**31  # difference of the seeds of a picture and the next one, whose noise must be independent
+MAX_TANGENT_MODEL_DEG = 120.0  # largest diagonal field of view that is fitted with a model of the angle's tangent
 
 
 def make_sample(recipe: Recipe, number: int, device: str, threads: int) -> dict[str, bytes]:
@@ -31,21 +31,21 @@ def make_sample(recipe: Recipe, number: int, device: str, threads: int) -> dict[
     layers = {"object_id", *(LAYERS[label] for label in recipe.labels if label in LAYERS)}
     wants_flow = "flow" in recipe.labels
 
-    def taken(by: Camera, seed: int) -> Image:
-        wanted = layers.union(flow.LAYERS) if wants_flow else layers
-        settings = RenderSettings(spp=recipe.spp, seed=seed, threads=threads, layers=sorted(wanted), effects=())
-        return render(seen.scene, by, settings, device=device)
+    def rendered(picture_camera: Camera, seed: int) -> Image:
+        all_layers = layers.union(flow.LAYERS) if wants_flow else layers
+        settings = RenderSettings(spp=recipe.spp, seed=seed, threads=threads, layers=sorted(all_layers), effects=())
+        return render(seen.scene, picture_camera, settings, device=device)
 
-    image = taken(camera, number)
+    image = rendered(camera, number)
     files = {"png": png_bytes(_sensed(recipe, image, number))}
     for label in recipe.labels:
         if label == "flow":
-            other = (number + SEEDS_APART) % 2**32
-            following = taken(camera.replace(shutter_opens_s=recipe.next_after_s), other)
-            leads = flow.flow_between(image, following, seen.scene)
-            files["next.png"] = png_bytes(_sensed(recipe, following, other))
-            files["flow.npy"] = _npy(leads.pixels)
-            files["flow_visible.png"] = png_bytes(np.where(leads.visible, 255, 0).astype(np.uint8))
+            next_seed = (number + SEED_OFFSET) % 2**32
+            next_image = rendered(camera.replace(shutter_opens_s=recipe.next_after_s), next_seed)
+            to_next = flow.flow_between(image, next_image, seen.scene)
+            files["next.png"] = png_bytes(_sensed(recipe, next_image, next_seed))
+            files["flow.npy"] = _npy(to_next.pixels)
+            files["flow_visible.png"] = png_bytes(np.where(to_next.visible, 255, 0).astype(np.uint8))
         elif label == "mask":
             files["mask.png"] = png_bytes(image.layers["object_id"].astype(np.uint8))
         else:
@@ -55,7 +55,7 @@ def make_sample(recipe: Recipe, number: int, device: str, threads: int) -> dict[
 
 
 def _sensed(recipe: Recipe, image: Image, number: int) -> np.ndarray:
-    """Simulates the sensor at the camera's ISO, or the closest that it has, and develops its raw image."""
+    """Simulates the sensor at the camera's ISO, or the closest ISO that the sensor has, and develops its raw image."""
     film = image.camera.film
     pitch_um = 1000 * film.width_mm / film.resolution[0]
     sensor = Sensor.load(recipe.sensor)
@@ -68,13 +68,15 @@ def _sensed(recipe: Recipe, image: Image, number: int) -> np.ndarray:
 
 
 def _npy(array: np.ndarray) -> bytes:
+    """Returns the content of an .npy file."""
     content = io.BytesIO()
     np.save(content, array)
     return content.getvalue()
 
 
 def _labels(recipe: Recipe, seen: RandomScene, camera: Camera, image: Image) -> dict[str, Any]:
-    is_wide = camera.field_of_view_deg.diagonal > WIDEST_PLANE_DEG
+    """Returns the content of the label file: the camera, its fitted model, the objects and the calibration board."""
+    is_wide = camera.field_of_view_deg.diagonal > MAX_TANGENT_MODEL_DEG
     still = camera.replace(motion=[])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -94,7 +96,7 @@ def _labels(recipe: Recipe, seen: RandomScene, camera: Camera, image: Image) -> 
 
 
 def _shows(image: Image, pixel: np.ndarray, object_id: int) -> bool:
-    """True if the object is visible at a pixel."""
+    """Returns True if the object is visible at a pixel position (column, row); False outside of the picture."""
     ids = image.layers["object_id"]
     if np.isnan(pixel).any() or not (0 <= pixel[0] < ids.shape[1] and 0 <= pixel[1] < ids.shape[0]):
         return False
@@ -102,12 +104,14 @@ def _shows(image: Image, pixel: np.ndarray, object_id: int) -> bool:
 
 
 def _objects(seen: RandomScene, camera: Camera, image: Image) -> Iterator[dict[str, Any]]:
-    """Yields a label for each visible object: its box [x, y, width, height] and area in pixels, the projection of its
-    centre, and its mask as run lengths in column-major order, starting with the background (COCO).
+    """Yields a label for each visible object.
+
+    It has the object's box [x, y, width, height] and area in pixels, the projection of its centre ("middle"), and its
+    mask as COCO's run lengths.
     """
     ids = image.layers["object_id"]
-    middles = camera.project(seen.middles_m)
-    for i, (category, middle) in enumerate(zip(seen.categories, middles, strict=True), start=2):
+    centres = camera.project(seen.centres_m)
+    for i, (category, centre) in enumerate(zip(seen.categories, centres, strict=True), start=2):
         mask = ids == i
         rows, columns = np.nonzero(mask)
         if len(rows):
@@ -118,12 +122,13 @@ def _objects(seen: RandomScene, camera: Camera, image: Image) -> Iterator[dict[s
                 "category": category,
                 "box": [x, y, int(columns.max()) + 1 - x, int(rows.max()) + 1 - y],
                 "area": len(rows),
-                "middle": [None, None] if np.isnan(middle).any() else middle.tolist(),
+                "middle": [None, None] if np.isnan(centre).any() else centre.tolist(),
                 "run_lengths": _run_lengths(mask),
             }
 
 
 def _run_lengths(mask: np.ndarray) -> list[int]:
+    """Returns the lengths of the mask's runs in column-major order, starting with the background (COCO)."""
     flat = mask.ravel(order="F")
     changes = np.flatnonzero(np.diff(flat)) + 1
     ends = [*changes.tolist(), flat.size]

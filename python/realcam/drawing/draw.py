@@ -1,4 +1,4 @@
-"""Draws a cross-section on matplotlib axes."""
+"""Drawing of a cross-section on matplotlib axes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from ..section.cut import Points
 from ..section.outlines import Element, Face
 from ..section.section import CrossSection
-from .notes import draw_crossings, draw_focus_group, draw_marks
+from .notes import draw_focus_group, draw_marks, draw_overlaps
 from .style import Style, ray_colour
 from .themes import Theme
 
@@ -34,25 +34,26 @@ class Extent:
 
 
 def extent_of(section: CrossSection, style: Style) -> Extent:
-    """Bounds of a section, with a margin."""
+    """Returns the bounds of a section's drawing, with a margin."""
     points: list[Points] = [polygon for element in section.elements for polygon in element.polygons]
     points += [part for face in section.faces for part in face.parts]
     points += [line for blocker in section.blockers for line in blocker.lines]
     points += [section.drawn(bundle.paths_mm).reshape(-1, 2) for bundle in section.bundles]
     points.append(section.film)
-    every = np.concatenate(points)
-    (z_low, y_low), (z_high, y_high) = every.min(axis=0), every.max(axis=0)
+    all_points = np.concatenate(points)
+    (z_low, y_low), (z_high, y_high) = all_points.min(axis=0), all_points.max(axis=0)
     if style.marks:
-        room = 0.25 * (z_high - z_low)
-        near = [mark for mark in section.marks if z_low - room < mark.z_mm < z_high + room]
+        # Marks that are farther away are listed as text (draw_marks).
+        reach = 0.25 * (z_high - z_low)
+        near = [mark for mark in section.marks if z_low - reach < mark.z_mm < z_high + reach]
         z_low = min([z_low, *(mark.z_mm for mark in near)])
         z_high = max([z_high, *(mark.z_mm for mark in near)])
         y_high = max([y_high, *(mark.semi_diameter_mm for mark in near)])
         y_low = min([y_low, *(-mark.semi_diameter_mm for mark in near)])
-    air = 0.04 * max(z_high - z_low, y_high - y_low)
-    above = 3.2 * air if section.focus_group else air
-    below = 2.6 * air if style.marks else air  # room for labels of principal planes, and the line of marks outside
-    return Extent(z_low - air, z_high + air, y_low - below, y_high + above)
+    margin = 0.04 * max(z_high - z_low, y_high - y_low)
+    above = 3.2 * margin if section.focus_group else margin
+    below = 2.6 * margin if style.marks else margin  # for labels of principal planes, and the text of marks outside
+    return Extent(z_low - margin, z_high + margin, y_low - below, y_high + above)
 
 
 def draw_section(
@@ -67,11 +68,13 @@ def draw_section(
     colours = {face.surface: _colour_of(face, style) for face in section.faces}
     for element in section.elements:
         for polygon in element.polygons:
-            axes.fill(*_moved(polygon, shift_mm), facecolor=theme.glass, edgecolor=theme.edge, linewidth=0.7, zorder=2)
+            axes.fill(
+                *_shifted(polygon, shift_mm), facecolor=theme.glass, edgecolor=theme.edge, linewidth=0.7, zorder=2
+            )
     for face in section.faces:
         for part in face.parts:
             width = 2.2 if face.is_mirror else 1.4 if style.radius_colours else 0.9
-            axes.plot(*_moved(part, shift_mm), color=colours[face.surface], linewidth=width, zorder=3)
+            axes.plot(*_shifted(part, shift_mm), color=colours[face.surface], linewidth=width, zorder=3)
         if face.is_asphere:
             z, y = face.parts[-1][-1]
             axes.annotate(
@@ -82,11 +85,11 @@ def draw_section(
         _draw_ghost(section, ghost, axes, theme, shift_mm)
     _draw_blockers(section, axes, theme, shift_mm)
     _draw_rays(section, axes, theme, shift_mm)
-    axes.plot(*_moved(section.film, shift_mm), color=theme.text, linewidth=2, zorder=4)
+    axes.plot(*_shifted(section.film, shift_mm), color=theme.text, linewidth=2, zorder=4)
     if style.marks:
         draw_marks(section, axes, style, shift_mm)
     draw_focus_group(section, axes, style, shift_mm)
-    draw_crossings(section, axes, style, shift_mm)
+    draw_overlaps(section, axes, style, shift_mm)
 
 
 def prepare_axes(axes: Axes, extent: Extent, style: Style, plane: str = "yz", z_label: str = "z / mm") -> None:
@@ -103,7 +106,8 @@ def prepare_axes(axes: Axes, extent: Extent, style: Style, plane: str = "yz", z_
     axes.spines[["left", "bottom"]].set_color(theme.text)
 
 
-def _moved(points: Points, shift: float) -> tuple[Points, Points]:
+def _shifted(points: Points, shift: float) -> tuple[Points, Points]:
+    """Returns z + shift and y of points (N, 2)."""
     return points[:, 0] + shift, points[:, 1]
 
 
@@ -115,17 +119,19 @@ def _colour_of(face: Face, style: Style) -> str:
 
 
 def _draw_ghost(section: CrossSection, ghost: CrossSection, axes: Axes, theme: Theme, shift: float) -> None:
+    """Draws the outlines of those elements of another state that have moved relative to the film."""
     to_film = section.film_z_mm - ghost.film_z_mm
-    here = {(e.front, e.back): e for e in section.elements}
+    elements = {(e.front, e.back): e for e in section.elements}
     for element in ghost.elements:
-        if not _is_moved(element, here.get((element.front, element.back)), to_film):
+        if not _has_moved(element, elements.get((element.front, element.back)), to_film):
             continue
         for polygon in element.polygons:
-            axes.fill(*_moved(polygon, to_film + shift), fill=False, edgecolor=theme.faint, linewidth=0.9,
+            axes.fill(*_shifted(polygon, to_film + shift), fill=False, edgecolor=theme.faint, linewidth=0.9,
                       linestyle=(0, (3, 2)), zorder=3.5)  # fmt: skip
 
 
-def _is_moved(element: Element, other: Element | None, shift: float) -> bool:
+def _has_moved(element: Element, other: Element | None, shift: float) -> bool:
+    """Returns True if an element shifted along z differs from the other one, or there is no other one."""
     if other is None:
         return True
     return any(
@@ -136,15 +142,15 @@ def _is_moved(element: Element, other: Element | None, shift: float) -> bool:
 
 def _draw_blockers(section: CrossSection, axes: Axes, theme: Theme, shift: float) -> None:
     for blocker in section.blockers:
-        around = len(blocker.lines) - (blocker.obstruction_mm > 0)
+        opening_lines = len(blocker.lines) - (blocker.obstruction_mm > 0)  # those around the opening come first
         for k, line in enumerate(blocker.lines):
-            is_stop = blocker.is_stop and k < around
+            is_stop = blocker.is_stop and k < opening_lines
             width, colour = (2.4, theme.text) if is_stop else (1.6, theme.faint)
-            axes.plot(*_moved(line, shift), color=colour, linewidth=width, solid_capstyle="butt", zorder=4)
+            axes.plot(*_shifted(line, shift), color=colour, linewidth=width, solid_capstyle="butt", zorder=4)
 
 
 def _draw_rays(section: CrossSection, axes: Axes, theme: Theme, shift: float) -> None:
     for bundle in section.bundles:
         colour = ray_colour(section, bundle, theme)
         for path in section.drawn_paths(bundle):
-            axes.plot(*_moved(path, shift), color=colour, linewidth=0.7, zorder=5, alpha=0.85, gid="ray")
+            axes.plot(*_shifted(path, shift), color=colour, linewidth=0.7, zorder=5, alpha=0.85, gid="ray")

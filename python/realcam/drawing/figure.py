@@ -19,7 +19,7 @@ from .style import Style, legend_of_wavelengths
 
 @dataclass(frozen=True)
 class Row:
-    """One lens at one zoom, focus and f-number, with its title."""
+    """Drawing of one lens at one zoom, focus and f-number, with its title. ghost: another state, drawn as outlines."""
 
     title: str
     subtitle: str
@@ -46,7 +46,7 @@ def figure_of(
         extent, shift = layout.extents[index], layout.shifts[index]
         height = layout.heights[index]
         bottom = top - height
-        axes = figure.add_axes(layout.share(layout.left, bottom, layout.plot_width, height))
+        axes = figure.add_axes(layout.relative(layout.left, bottom, layout.plot_width, height))
         last = index == len(rows) - 1
         label = "z from the film / mm" if align == "film" else "z / mm"
         prepare_axes(axes, extent, layout.style, row.section.plane, label if last else "")
@@ -54,15 +54,19 @@ def figure_of(
         _write_titles(figure, layout, index, top)
         fields = shown_in_insets(row.section) if insets else []
         for box, field in zip(layout.inset_boxes(len(fields), bottom, height), fields, strict=True):
-            draw_inset(figure.add_axes(layout.share(*box)), row.section, field, layout.style, layout.scale)
+            draw_inset(figure.add_axes(layout.relative(*box)), row.section, field, layout.style, layout.scale)
         top = bottom - layout.below(index)
     return figure
 
 
 class _Layout:
-    """Layout in inches; all rows have the same scale and the same z limits."""
+    """Layout of a figure, in inches; all rows have the same scale and the same z limits.
 
-    right, gap = 0.12, 0.22
+    scale: inches per mm of the lens. shifts: added to z of each row. extents, heights: limits in mm and height of the
+    axes of each row. line: height of a line of text.
+    """
+
+    right, gap = 0.12, 0.22  # right margin, and gap between drawing and insets
     inset_title = 0.24
 
     def __init__(self, rows: Sequence[Row], style: Style, width: float, insets: bool, align: str) -> None:
@@ -72,47 +76,53 @@ class _Layout:
         self.line, self.left = 1.45 * font / 72, 0.08 * font
         self.with_insets = insets and any(row.section.bundles for row in rows)
         self.inset_width = 0.19 * width if self.with_insets else 0.0
-        room = self.left + self.right + (self.inset_width + self.gap if self.with_insets else 0)
-        self.plot_width = width - room
+        margins = self.left + self.right + (self.inset_width + self.gap if self.with_insets else 0)
+        self.plot_width = width - margins
         self.shifts = [-row.section.film_z_mm if align == "film" else 0.0 for row in rows]
         bounds = [
             _shifted(extent_of(row.section, self.style), shift) for row, shift in zip(rows, self.shifts, strict=True)
         ]
         z_low, z_high = min(b.z_low for b in bounds), max(b.z_high for b in bounds)
         # A tall lens is scaled down, so that the figure is not much taller than wide.
-        tallest = max(0.95 * width / len(rows), 0.4 * width)
-        self.scale = min(self.plot_width / (z_high - z_low), tallest / max(b.height for b in bounds))
-        spare = 0.5 * (self.plot_width / self.scale - (z_high - z_low))
-        least = 0.0
+        max_height = max(0.95 * width / len(rows), 0.4 * width)
+        self.scale = min(self.plot_width / (z_high - z_low), max_height / max(b.height for b in bounds))
+        z_margin = 0.5 * (self.plot_width / self.scale - (z_high - z_low))
+        min_height = 0.0
         if self.with_insets:
-            most = max(len(shown_in_insets(row.section)) for row in rows)
-            least = most * (0.48 * self.inset_width + self.inset_title)
+            inset_count = max(len(shown_in_insets(row.section)) for row in rows)
+            min_height = inset_count * (0.48 * self.inset_width + self.inset_title)
         self.extents, self.heights = [], []
         for b in bounds:
-            more = max(0.0, 0.5 * (least / self.scale - b.height))
-            self.extents.append(Extent(z_low - spare, z_high + spare, b.y_low - more, b.y_high + more))
+            y_margin = max(0.0, 0.5 * (min_height / self.scale - b.height))
+            self.extents.append(Extent(z_low - z_margin, z_high + z_margin, b.y_low - y_margin, b.y_high + y_margin))
             self.heights.append(self.extents[-1].height * self.scale)
         self.titles = [self._wrapped(row) for row in rows]
         self.height = sum(self.heights) + sum(self.title_height(i) + self.below(i) for i in range(len(rows)))
 
     def title_height(self, index: int) -> float:
+        """Returns the height of a row's title, subtitle and legend."""
         legend = bool(legend_of_wavelengths(self.rows[index].section, self.style.theme))
         return (len(self.titles[index]) + 1 + legend) * self.line + 0.16
 
     def below(self, index: int) -> float:
+        """Returns the height of the labels below a row's axes."""
         return 2.9 * self.line if index == len(self.rows) - 1 else 1.9 * self.line
 
-    def share(self, left: float, bottom: float, width: float, height: float) -> tuple[float, float, float, float]:
+    def relative(self, left: float, bottom: float, width: float, height: float) -> tuple[float, float, float, float]:
+        """Converts a box from inches to fractions of the figure."""
         return left / self.width, bottom / self.height, width / self.width, height / self.height
 
     def inset_boxes(self, count: int, bottom: float, height: float) -> list[tuple[float, float, float, float]]:
-        """Boxes of the insets from bottom to top, in the order of the fields' heights on the film."""
+        """Returns the boxes (left, bottom, width, height) of a row's insets, from bottom to top.
+
+        bottom, height: those of the row's axes.
+        """
         if count == 0:
             return []
         cell = height / count
-        tall = min(cell - self.inset_title, self.inset_width)
+        inset_height = min(cell - self.inset_title, self.inset_width)
         left = self.width - self.right - self.inset_width
-        return [(left, bottom + k * cell, self.inset_width, tall) for k in range(count)]
+        return [(left, bottom + k * cell, self.inset_width, inset_height) for k in range(count)]
 
     def _wrapped(self, row: Row) -> list[str]:
         characters = int(1.75 * 72 * (self.width - self.left) / (1.15 * self.style.font_pt))
@@ -125,6 +135,7 @@ def _shifted(extent: Extent, shift: float) -> Extent:
 
 
 def _write_titles(figure: matplotlib.figure.Figure, layout: _Layout, index: int, top: float) -> None:
+    """Writes title, subtitle and legend of a row above its axes, whose upper edge is at `top`, in inches."""
     # Titles are plain text, in which a dollar sign must not start a formula.
     row, style = layout.rows[index], layout.style
     x = 0.12 / layout.width

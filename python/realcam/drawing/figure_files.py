@@ -1,4 +1,4 @@
-"""Files of matplotlib figures, vector and bitmap: reproducible bytes, written completely or not at all."""
+"""Writing of matplotlib figures as vector and bitmap files, with reproducible bytes, completely or not at all."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from matplotlib.transforms import Bbox
 from .. import files
 
 NOTEBOOK_DPI = 100
-_SETTINGS: Any = {"svg.fonttype": "none", "pdf.fonttype": 42}  # text stays text
+_SETTINGS: Any = {"svg.fonttype": "none", "pdf.fonttype": 42}  # writes text as text, not as outlines
 # Keyed by suffix, for Figure.savefig. Vector files have no date, so that their bytes are reproducible; bitmaps are
 # lossless, and JPEG is visually so.
 _OPTIONS: dict[str, dict[str, Any]] = {
@@ -31,7 +31,7 @@ FORMATS = tuple(_OPTIONS)
 
 
 class ShownFigure(Figure):
-    """A figure that a notebook shows as a cell's result, even without matplotlib's inline display."""
+    """A figure that a notebook shows as the result of a cell, even without matplotlib's inline display."""
 
     def _repr_png_(self) -> bytes:
         return figure_bytes(self, ".png", NOTEBOOK_DPI)
@@ -45,8 +45,11 @@ def check_figure_target(path: str | os.PathLike[str]) -> Path:
 def figure_bytes(
     figure: Figure, suffix: str, dpi: float = 160, salt: str = "realcam", crop: Bbox | None = None
 ) -> bytes:
-    """Returns the content of a file of that suffix. salt: seed of the SVG ids, which must differ between drawings
-    on one page. crop: the part of the figure to keep, in inches; None: all."""
+    """Returns the content of a file with this suffix.
+
+    dpi: resolution of bitmaps. salt: seed of the SVG ids, which must differ between drawings on one page. crop: part of
+    the figure to write, in inches; None: all.
+    """
     kind = suffix.lower()
     for text in figure.findobj(Text):
         assert isinstance(text, Text)

@@ -1,4 +1,4 @@
-"""A contact sheet of lenses: a grid of small cross-sections, with matplotlib."""
+"""Contact sheets of lenses: a grid of small cross-sections."""
 
 from __future__ import annotations
 
@@ -30,11 +30,10 @@ def save_gallery(
 ) -> None:
     """Writes cross-sections of lenses as .svg, .pdf, .png, .jpg, .tif or .webp.
 
-    lenses: None: all bundled lenses, by name. columns: of the grid; the number of rows follows. theme: light or dark.
-    titles: whether name, focal length in mm and f-number stand above each drawing.
+    lenses: None: all bundled lenses, by name. columns: number of columns of the grid. theme: "light" or "dark".
+    titles: True: name, focal length in mm and f-number are above each drawing.
     Each drawing has its own scale. A film far behind the glass is left out, so that the glass is large enough to see.
-    Raises ImageFileError for a name that cannot be written, InputError for no lenses, no columns or an
-    unknown theme.
+    Raises ImageFileError if the file cannot be written, and InputError for no lenses, no columns or an unknown theme.
     """
     style = Style(theme_named(theme))
     target = check_figure_target(path)
@@ -82,7 +81,8 @@ def _write_title(lens: Lens, axes: Axes, style: Style) -> None:
 
 
 def _window(lens: Lens) -> tuple[float, float, float]:
-    """Left, right and half height of a cell, in mm: the glass with a margin, and the film if it is close enough."""
+    """Returns the left end, right end and half height of a cell, in mm: they contain the glass with a margin, and the
+    film if it is close enough."""
     front, back = min(lens.vertices_mm), max(lens.vertices_mm)
     rim = max(surface.clear_semi_diameter_mm for surface in lens.surfaces)
     reach = max(back - front, 2 * rim)

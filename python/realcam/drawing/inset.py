@@ -1,4 +1,4 @@
-"""Inset of a drawing: the rays of one field near the film, magnified."""
+"""Insets of a drawing: the rays of one field near the film, magnified."""
 
 from __future__ import annotations
 
@@ -11,31 +11,34 @@ from ..fields import Field
 from ..section.section import CrossSection
 from .style import Style, ray_colour
 
-_STEPS = (1, 2, 5)
+_STEPS = (1, 2, 5)  # mantissas of magnifications and of lengths of scale bars
 
 
-def shown_in_insets(section: CrossSection, most: int = 4) -> list[Field]:
-    """Fields with an inset, sorted by height on the film: all, or `most` evenly chosen ones."""
-    lit = [f for f in section.fields if any(len(b.paths_mm) for b in section.bundles if b.field == f)]
-    lit.sort(key=lambda field: field.film_height_mm)
-    if len(lit) <= most:
-        return lit
-    return [lit[i] for i in np.linspace(0, len(lit) - 1, most).round().astype(int)]
+def shown_in_insets(section: CrossSection, max_count: int = 4) -> list[Field]:
+    """Returns the fields with an inset, sorted by height on the film: all with rays, or max_count regularly chosen
+    ones."""
+    with_rays = [f for f in section.fields if any(len(b.paths_mm) for b in section.bundles if b.field == f)]
+    with_rays.sort(key=lambda field: field.film_height_mm)
+    if len(with_rays) <= max_count:
+        return with_rays
+    return [with_rays[i] for i in np.linspace(0, len(with_rays) - 1, max_count).round().astype(int)]
 
 
 def letter_of(section: CrossSection, field: Field) -> str:
+    """Returns the letter that denotes a field in a drawing: "a" for the first one."""
     return chr(ord("a") + section.fields.index(field) % 26)
 
 
 def draw_inset(axes: Axes, section: CrossSection, field: Field, style: Style, inches_per_mm: float) -> float:
     """Draws the rays of one field near the film; returns the magnification relative to the drawing.
 
-    The magnification is the largest of 1, 2, 5, 10 ... at which the spot fills no more than two thirds of the height.
+    inches_per_mm: scale of the drawing. The magnification is the largest of 1, 2, 5, 10 ... at which the spot fills no
+    more than two thirds of the height.
     """
     theme = style.theme
     bundles = [bundle for bundle in section.bundles if bundle.field == field and len(bundle.paths_mm)]
     heights = np.concatenate([section.drawn(bundle.paths_mm)[:, -1, 1] for bundle in bundles])
-    middle, size = 0.5 * (heights.min() + heights.max()), float(np.ptp(heights))
+    centre, size = 0.5 * (heights.min() + heights.max()), float(np.ptp(heights))
     box = axes.get_window_extent()
     width, height = box.width / axes.figure.dpi, box.height / axes.figure.dpi
     magnification = _rounded_down(2 / 3 * height / (inches_per_mm * max(size, 1e-9)))
@@ -44,7 +47,7 @@ def draw_inset(axes: Axes, section: CrossSection, field: Field, style: Style, in
     for bundle in bundles:
         z_part, y_part = section.drawn(bundle.directions_at_film).T
         film_heights = section.drawn(bundle.paths_mm)[:, -1, 1]
-        for y, slope in zip(film_heights - middle, y_part / z_part, strict=True):
+        for y, slope in zip(film_heights - centre, y_part / z_part, strict=True):
             # Clipped to the frame here, because not every SVG viewer clips.
             z = np.clip((np.array([-half_y, half_y]) - y) / slope, -half_z, half_z) if slope else [-half_z, half_z]
             axes.plot(z, y + slope * np.asarray(z), color=ray_colour(section, bundle, theme), linewidth=0.7)

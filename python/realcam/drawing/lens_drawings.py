@@ -1,4 +1,4 @@
-"""Drawings of lenses. realcam.section has their content as arrays."""
+"""Functions that draw lenses and write the drawings to files. realcam.section has their content as arrays."""
 
 from __future__ import annotations
 
@@ -36,15 +36,16 @@ def draw(
     theme: str = "light",
     width_px: int = 1600,
 ) -> Figure:
-    """Draws the meridional section with rays as a matplotlib figure, which notebooks show; the film is on the right.
+    """Draws the meridional section with rays; the film is on the right.
 
     plane, rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: see realcam.cross_section.
-    radius_colours: draws faces of positive radius of curvature in blue, of negative in red.
-    marks: entrance and exit pupil (EP, XP), principal planes (H, H'), focal points (F, F').
-    insets: the rays of each field at the film, magnified.
-    ghost: the lens in another state; its elements that have moved are drawn as outlines.
-    theme: "light" or "dark". width_px: of the picture. realcam.drawing.save_cross_section writes it to a file.
-    Raises InputError if no light passes the lens or an option is invalid.
+    radius_colours: True: faces with a positive radius of curvature are blue, those with a negative one red.
+    marks: True: draws entrance and exit pupil (EP, XP), principal planes (H, H') and focal points (F, F').
+    insets: True: draws the rays of each field at the film, magnified.
+    ghost: the lens in another state; those of its elements that have moved are drawn as outlines.
+    theme: "light" or "dark". width_px: width of the figure in pixels.
+    Returns a matplotlib figure, which notebooks show; realcam.drawing.save_cross_section writes it to a file. Raises
+    InputError if no light passes the lens or an option is invalid.
     """
     style = Style(theme_named(theme), radius_colours, marks)
     section = cross_section(
@@ -59,12 +60,12 @@ def draw(
     )
     other = None if ghost is None else cross_section(ghost, plane=plane, rays=0)
     row = Row(self.title or self.name, data_of(self, section), section, other)
-    # Rays that start at one film point always meet there: insets would show nothing.
+    # Rays that start at one film point always intersect there: insets would show no spot.
     return figure_of([row], style, width_px=width_px, insets=insets and rays_from == "object")
 
 
 def lens_png(lens: Lens) -> bytes | None:
-    """PNG of the lens; None if it cannot be drawn because no light passes, so that the notebook shows its text."""
+    """Returns a PNG file of the lens for notebooks; None if it cannot be drawn because no light passes."""
     try:
         return figure_bytes(draw(lens), ".png", NOTEBOOK_DPI)
     except InputError:
@@ -156,7 +157,8 @@ def save_states(states: Sequence[tuple[str, Lens]], path: str | os.PathLike[str]
 
 
 def states_of(lens: Lens) -> list[tuple[str, Lens]]:
-    """Returns (title, lens) of each zoom position; of other lenses at infinity and at the nearest focus, if stated."""
+    """Returns (title, lens) of each zoom position; for a lens that does not zoom, of the focus at infinity and, if the
+    lens file specifies it, of the nearest focus."""
     zoom: Any = lens if hasattr(lens, "zoom_positions") else None
     if zoom is not None and zoom.zoom_positions:
         return [(f"{lens.title or lens.name}, {name}", zoom.zoomed(name)) for name in zoom.zoom_positions]

@@ -13,6 +13,10 @@ from .style import Style
 
 
 def draw_marks(section: CrossSection, axes: Axes, style: Style, shift: float) -> None:
+    """Draws pupils, principal planes and focal points; those outside of the axes are listed as text.
+
+    shift: is added to z, mm, also in the functions below.
+    """
     theme = style.theme
     low, high = axes.get_xlim()
     shown = [mark for mark in section.marks if low <= mark.z_mm + shift <= high]
@@ -39,7 +43,11 @@ def draw_marks(section: CrossSection, axes: Axes, style: Style, shift: float) ->
 
 
 def _sides(axes: Axes, style: Style, positions: list[tuple[float, float, int]]) -> list[str]:
-    """Horizontal alignment of labels: of two that would overlap, one goes to the left and the other to the right."""
+    """Returns the horizontal alignment of labels: of two that would overlap, one is left and the other right of its
+    mark.
+
+    positions: (z, y, vertical offset of the label in points) of each mark.
+    """
     axes.apply_aspect()  # changes the axes' limits, on which the positions depend
     figure = axes.get_figure()
     assert figure is not None
@@ -63,6 +71,7 @@ def _label(axes: Axes, mark: Mark, z: float, y: float, points_up: float, side: s
 
 
 def draw_focus_group(section: CrossSection, axes: Axes, style: Style, shift: float) -> None:
+    """Draws a bracket above the focus group, with its travel."""
     group = section.focus_group
     if group is None:
         return
@@ -88,7 +97,8 @@ def draw_focus_group(section: CrossSection, axes: Axes, style: Style, shift: flo
                   fontsize=0.85 * style.font_pt, color=colour, zorder=6)  # fmt: skip
 
 
-def draw_crossings(section: CrossSection, axes: Axes, style: Style, shift: float) -> None:
+def draw_overlaps(section: CrossSection, axes: Axes, style: Style, shift: float) -> None:
+    """Draws the overlaps of faces in the colour of errors, and describes them as text."""
     colour = style.theme.error
     lines = []
     for overlap in section.overlaps:

@@ -1,4 +1,4 @@
-"""Style of drawings, and the meaning of their colours."""
+"""Options of drawings, colours of rays, legends and subtitles."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Style:
 
 
 def ray_colour(section: CrossSection, bundle: RayBundle, theme: Theme) -> str:
-    """Colour of a bundle: by wavelength if there are several, otherwise by field."""
+    """Returns the colour of a bundle: by wavelength if there are several, otherwise by field."""
     wavelengths = section.wavelengths_nm
     if len(wavelengths) > 1:
         return colours_of_wavelengths(wavelengths, theme)[wavelengths.index(bundle.wavelength_nm)]
@@ -32,7 +32,7 @@ def ray_colour(section: CrossSection, bundle: RayBundle, theme: Theme) -> str:
 
 
 def legend_of_wavelengths(section: CrossSection, theme: Theme) -> Sequence[tuple[str, str]]:
-    """Text and colour for each wavelength; empty for a single one."""
+    """Returns text and colour for each wavelength; empty for a single one."""
     wavelengths = section.wavelengths_nm
     if len(wavelengths) < 2:
         return ()
@@ -41,7 +41,7 @@ def legend_of_wavelengths(section: CrossSection, theme: Theme) -> Sequence[tuple
 
 
 def data_of(lens: Lens, section: CrossSection) -> str:
-    """Subtitle of a drawing: focal length, f-number and focus."""
+    """Returns the subtitle of a drawing: focal length, f-number and focus."""
     data = lens.first_order()
     words = [f"f = {number_text(data.effective_focal_length_mm)} mm"]
     if math.isfinite(lens.f_number):

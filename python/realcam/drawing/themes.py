@@ -63,10 +63,11 @@ def theme_named(name: str) -> Theme:
 
 
 def colours_of_wavelengths(wavelengths_nm: Sequence[float], theme: Theme) -> list[str]:
-    """Ray colours for wavelengths: close to their visual colours if these are all distinct, otherwise in sequence."""
+    """Returns ray colours for wavelengths: close to their visual colours if these are all distinct, otherwise in
+    sequence."""
     bands = (440, 490, 570, 600)  # nm, between violet, cyan, green, orange and pink
-    order = (2, 3, 1, 0, 5)
-    seen = [theme.rays[order[bisect.bisect(bands, wavelength)]] for wavelength in wavelengths_nm]
-    if len(set(seen)) == len(seen):
-        return seen
+    band_colours = (2, 3, 1, 0, 5)  # indices in Theme.rays
+    visual = [theme.rays[band_colours[bisect.bisect(bands, wavelength)]] for wavelength in wavelengths_nm]
+    if len(set(visual)) == len(visual):
+        return visual
     return [theme.rays[i % len(theme.rays)] for i in range(len(wavelengths_nm))]

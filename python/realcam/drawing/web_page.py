@@ -21,7 +21,10 @@ def inline_svg(figure: Figure, salt: str, crop: Bbox | None = None) -> str:
 
 
 def page_top(title: str, style: str, theme: str | None) -> str:
-    """Returns the start of a page, up to its heading. title: HTML-escaped. style: CSS, which may use the variables."""
+    """Returns the start of an HTML page, up to its heading.
+
+    title: HTML-escaped. style: CSS, which may use the colour variables. theme: see colour_variables().
+    """
     return f"""<!doctype html>
 <html lang="en">
 <meta charset="utf-8">
@@ -33,7 +36,8 @@ def page_top(title: str, style: str, theme: str | None) -> str:
 
 
 def colour_variables(theme: str | None) -> str:
-    """Returns CSS that sets the colour variables; print uses the light theme. theme: None follows the browser."""
+    """Returns CSS that sets the colour variables. theme: "light", "dark", or None for the browser's setting; print
+    always uses the light theme."""
     light, dark = (_declared(name) for name in ("light", "dark"))
     screen = light if theme is None else _declared(theme)
     following = f"@media (prefers-color-scheme: dark) {{ {dark} }}\n" if theme is None else ""
@@ -48,6 +52,6 @@ def _declared(theme: str) -> str:
 
 
 def _colours(theme: Theme) -> dict[str, str]:
-    """Colours by the names of their CSS variables."""
+    """Returns the colours of a theme by the names of their CSS variables."""
     single = {field.name: getattr(theme, field.name) for field in fields(theme) if field.name != "rays"}
     return {**single, **{f"ray-{number}": colour for number, colour in enumerate(theme.rays)}}

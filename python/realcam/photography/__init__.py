@@ -1,4 +1,4 @@
-"""Photographic data of a lens."""
+"""Photographers' figures of a lens: depth of field, angle of view, breathing, exposure, and comparisons."""
 
 from .comparison import FieldFigures, LensSummary, lens_summary
 from .depth import DepthOfField, SharpRange, blur_diameter_mm, depth_of_field

@@ -1,4 +1,4 @@
-"""Comparison of lenses."""
+"""Summaries of lenses for their comparison."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class FieldFigures(ShortText):
 
     field: Field
     rms_spot_radius_um: float  #: about the centroid, at the design wavelength
-    mtf_tangential: NDArray[np.float64] | None  #: with diffraction, at the requested frequencies
+    mtf_tangential: NDArray[np.float64] | None  #: with diffraction, at the requested frequencies; None: not requested
     mtf_sagittal: NDArray[np.float64] | None
 
 
@@ -32,8 +32,8 @@ class LensSummary(ShortText):
 
     lens: Lens
     figures: PhotographicFigures
-    length_mm: float  #: from the foremost vertex to the film
-    element_count: int
+    length_mm: float  #: distance from the foremost vertex to the film
+    element_count: int  #: number of glass elements
     fields: tuple[FieldFigures, ...]
     mtf_frequencies_per_mm: tuple[float, ...]
 
@@ -45,10 +45,11 @@ def lens_summary(
     mtf_frequencies_per_mm: Sequence[float] = (),
     circle_of_confusion_mm: float | None = None,
 ) -> LensSummary:
-    """Photographic data and sharpness over the field.
+    """Returns photographic data of a lens and its sharpness over the field.
 
     shares: field points as fractions of the film corner's height, or of the illuminated field's edge.
-    mtf_frequencies_per_mm: if empty, omits the MTF, which takes a second for large aberrations. Raises InputError.
+    mtf_frequencies_per_mm: frequencies of the MTF, which takes a second for large aberrations; empty: no MTF.
+    circle_of_confusion_mm: see depth_of_field(). Raises InputError.
     """
     frequencies = tuple(mtf_frequencies_per_mm)
     field_figures = []

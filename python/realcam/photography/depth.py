@@ -22,13 +22,17 @@ _TOLERANCE = 1e-7  # tolerance of the inverse distance, relative to the depth of
 
 @dataclass(frozen=True)
 class SharpRange:
-    """Range of sharp object distances from the film. Both nan if no distance is sharp; far_m is inf up to infinity."""
+    """Range of object distances from the film that are sharp.
+
+    near_m, far_m: nan if no distance is sharp. far_m: inf if infinity is sharp.
+    """
 
     near_m: float
     far_m: float
 
     @property
     def depth_m(self) -> float:
+        """Length of the range."""
         return self.far_m - self.near_m
 
 
@@ -47,21 +51,22 @@ class DepthOfField:
 
 
 def blur_diameter_mm(lens: Lens, object_distance_m: float | None = None) -> float:
-    """Blur diameter of an axial point: of the uniform disc with the same second moment, sqrt(8) times the RMS radius.
+    """Returns the blur diameter of an axial point in mm: that of the uniform disc with the same second moment, sqrt(8)
+    times the RMS radius.
 
     For a defocused lens without aberrations, it is the diameter of the blur disc. The diaphragm is replaced by a circle
-    of the same area. object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus. Raises
-    InputError if no ray passes.
+    of the same area. object_distance_m: distance from the object plane to the front vertex, inf allowed; None: the
+    plane in focus. Raises InputError if no ray passes.
     """
-    spot = _round(lens).spot(0.0, object_distance_m=object_distance_m, pupil=_PUPIL)
+    spot = _with_round_stop(lens).spot(0.0, object_distance_m=object_distance_m, pupil=_PUPIL)
     return math.sqrt(8) * spot.rms_radius_mm
 
 
 def depth_of_field(lens: Lens, circle_of_confusion_mm: float | None = None) -> DepthOfField:
-    """Depth of field and hyperfocal distance of a lens at its current focus and stop, on the axis.
+    """Computes the depth of field and hyperfocal distance of a lens at its current focus and stop, on the axis.
 
-    circle_of_confusion_mm: the largest blur that counts as sharp; None is the film's diagonal / 1500. Blur of real rays
-    is blur_diameter_mm. Raises InputError if the lens has no focal length, or if no light passes it.
+    circle_of_confusion_mm: the largest blur that counts as sharp; None: the film's diagonal / 1500. The blur of real
+    rays is blur_diameter_mm(). Raises InputError if the lens has no focal length, or if no light passes it.
     """
     circle = math.hypot(*lens.film_mm) / 1500 if circle_of_confusion_mm is None else circle_of_confusion_mm
     if not (circle > 0 and math.isfinite(circle)):
@@ -81,20 +86,25 @@ def depth_of_field(lens: Lens, circle_of_confusion_mm: float | None = None) -> D
 
 
 def sharp_ranges(lens: Lens, circle_mm: float) -> tuple[SharpRange, SharpRange]:
-    """Ranges whose blur is at most the circle of confusion, by real rays and by the formula. Raises InputError."""
+    """Returns the ranges whose blur is at most the circle of confusion, by real rays and by the formula.
+
+    Raises InputError.
+    """
     thin = ThinLens.of(lens)
     near, far = (distance + thin.film_from_principal_plane_mm for distance in thin.sharp_range_mm(circle_mm))
     return _real_range(lens, thin, circle_mm), SharpRange(near / 1000, far / 1000)
 
 
-def _round(lens: Lens) -> Lens:
+def _with_round_stop(lens: Lens) -> Lens:
     return lens.with_iris(0) if lens.iris_blades else lens
 
 
 def _real_range(lens: Lens, thin: ThinLens, circle: float) -> SharpRange:
-    """Searches over the inverse distance to the front vertex, over which blur is nearly symmetric about the focus."""
+    """Returns the sharp range by real rays.
+
+    The search runs over the inverse distance to the front vertex, over which blur is nearly symmetric about the focus.
+    """
     film = lens.film_position_mm / 1000
-    none = SharpRange(math.nan, math.nan)
 
     def excess(inverse_m: float) -> float:
         try:
@@ -107,21 +117,22 @@ def _real_range(lens: Lens, thin: ThinLens, circle: float) -> SharpRange:
     step = 0.25 * thin.vergence_of_blur_per_mm(circle) * 1000
     sharpest = _sharpest(excess, centre, step)
     if sharpest is None:
-        return none
+        return SharpRange(math.nan, math.nan)
     near = _edge(excess, sharpest, step)
     far = 0.0 if excess(0.0) <= 0 else _edge(excess, sharpest, -step)
     return SharpRange(film + (1 / near if near > 0 else 0.0), film + (math.inf if far == 0 else 1 / far))
 
 
 def _sharpest(excess: Callable[[float], float], centre: float, step: float) -> float | None:
-    """Returns an inverse distance near the plane in focus with acceptable blur, or None.
+    """Returns the sharpest of some inverse distances near the plane in focus, or None if none has acceptable blur.
 
-    Focus is set with the stop open, so a stopped-down lens may be sharpest elsewhere (focus shift).
+    excess(inverse distance): blur diameter minus the circle of confusion. centre: inverse distance of the plane in
+    focus. Focus is set with the stop open, so a stopped-down lens may be sharpest elsewhere (focus shift).
     """
     positions = [max(centre + k * step, 0.0) for k in (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6, 8, -8)]
     blur = {position: excess(position) for position in positions}
-    found = {position: value for position, value in blur.items() if value <= 0}
-    return min(found, key=lambda position: found[position]) if found else None
+    acceptable = {position: value for position, value in blur.items() if value <= 0}
+    return min(acceptable, key=lambda position: acceptable[position]) if acceptable else None
 
 
 def _edge(excess: Callable[[float], float], sharp: float, step: float) -> float:
@@ -140,7 +151,7 @@ def _edge(excess: Callable[[float], float], sharp: float, step: float) -> float:
 
 
 def _real_hyperfocal(lens: Lens, thin: ThinLens, circle: float) -> float:
-    """Nearest focus distance, m, at which infinity is sharp by real rays; nan if there is none."""
+    """Returns the nearest focus distance, m, at which infinity is sharp by real rays; nan if there is none."""
 
     def excess(inverse_m: float) -> float:
         try:

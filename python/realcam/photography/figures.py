@@ -19,7 +19,7 @@ class Breathing:
     """Focus breathing: the change of the angle of view with focus."""
 
     nearest_focus_m: float
-    is_assumed: bool  #: True if the lens file states no nearest focus; a magnification of 1/10 is used
+    is_assumed: bool  #: True if the lens file does not specify a nearest focus; a magnification of 1/10 is used
     at_infinity_deg: FieldOfView
     at_nearest_deg: FieldOfView
 
@@ -61,17 +61,18 @@ class PhotographicFigures:
 
 
 def angle_of_view_deg(lens: Lens) -> FieldOfView:
-    """Full angles over width, height and diagonal of the lens's film, by real rays from its edges, degrees.
+    """Returns the full angles over width, height and diagonal of the lens's film, by real rays from its edges, degrees.
 
-    If the image circle is smaller than the film, the angles of the illuminated part.
+    If the image circle is smaller than the film, they are those of the illuminated part.
     """
     return Camera(lens).field_of_view_deg
 
 
 def breathing(lens: Lens, nearest_focus_m: float | None = None) -> Breathing:
-    """Angles of view at infinity and at the nearest focus, from the lens file or at a magnification of 1/10.
+    """Returns the angles of view at infinity and at the nearest focus.
 
-    Raises InputError if the lens cannot be focused at one of them.
+    nearest_focus_m: distance from the object to the film; None: that of the lens file, or that of a magnification of
+    1/10. Raises InputError if the lens cannot be focused at one of the two.
     """
     far = lens.focused(math.inf)
     nearest = lens.nearest_focus_m if nearest_focus_m is None else nearest_focus_m
@@ -85,19 +86,20 @@ def breathing(lens: Lens, nearest_focus_m: float | None = None) -> Breathing:
 
 
 def exposure_value(lens: Lens, exposure_time_s: float, iso: float = 100.0) -> ExposureValue:
-    """Exposure values of a lens with these settings. Raises InputError."""
+    """Returns the exposure values of a lens with these settings. Raises InputError."""
     if not (exposure_time_s > 0 and math.isfinite(exposure_time_s)):
         raise InputError("the exposure time must be a positive number of seconds")
     if not (iso > 0 and math.isfinite(iso)):
         raise InputError("the ISO must be a positive number")
     ev = math.log2(lens.f_number**2 / exposure_time_s)
-    film_side = lens.t_stop * working_f_number(lens) / working_f_number(at_infinity(lens))
-    by_iso = math.log2(100 / iso)
-    return ExposureValue(exposure_time_s, iso, ev, ev + by_iso, math.log2(film_side**2 / exposure_time_s) + by_iso)
+    working_t_stop = lens.t_stop * working_f_number(lens) / working_f_number(at_infinity(lens))
+    iso_stops = math.log2(100 / iso)
+    ev_at_film = math.log2(working_t_stop**2 / exposure_time_s)
+    return ExposureValue(exposure_time_s, iso, ev, ev + iso_stops, ev_at_film + iso_stops)
 
 
 def working_f_number(lens: Lens) -> float:
-    """1 / (2 n' sin u') of the outermost passing ray from the axial point of the plane in focus.
+    """Returns 1 / (2 n' sin u') of the outermost passing ray from the axial point of the plane in focus.
 
     Raises InputError if no light passes.
     """
@@ -111,7 +113,7 @@ def working_f_number(lens: Lens) -> float:
 
 
 def magnification(lens: Lens) -> float:
-    """Paraxial magnification of the plane in focus, as a positive number; 0 at infinity."""
+    """Returns the paraxial magnification of the plane in focus, as a positive number; 0 at infinity."""
     data = lens.first_order()
     object_mm = 1000 * lens.focus_distance_m - lens.film_position_mm
     return abs(data.effective_focal_length_mm / (object_mm + data.front_focal_distance_mm))
@@ -128,7 +130,7 @@ def photographic_figures(
     far, data = at_infinity(lens), lens.first_order()
     at_far = far.first_order()
     m = magnification(lens)
-    pupils = data.exit_pupil_diameter_mm / data.entrance_pupil_diameter_mm
+    pupil_magnification = data.exit_pupil_diameter_mm / data.entrance_pupil_diameter_mm
     width, height = lens.film_mm
     by_formula = FieldOfView(
         *(
@@ -147,7 +149,7 @@ def photographic_figures(
         f_number=at_far.f_number,
         t_stop=lens.t_stop,
         working_f_number=working_f_number(lens),
-        working_f_number_by_formula=at_far.f_number * (1 + m / pupils),
+        working_f_number_by_formula=at_far.f_number * (1 + m / pupil_magnification),
         focus_distance_m=lens.focus_distance_m,
         magnification=m,
         angle_of_view_deg=angle_of_view_deg(lens),

@@ -20,9 +20,9 @@ class Mark:
 
 @dataclass(frozen=True)
 class FocusGroup:
-    """The surfaces that move to focus."""
+    """The surfaces that move for focusing."""
 
-    first: int
+    first: int  #: indices in Lens.surfaces
     last: int
     travel_mm: float | None  #: from infinity to the nearest focus, positive towards the film; None: unknown
     nearest_focus_m: float
@@ -54,6 +54,7 @@ def focus_group_of(lens: Lens) -> FocusGroup | None:
 
 
 def _travel(lens: Lens, first: int) -> float | None:
+    """Returns FocusGroup.travel_mm of the group that begins with surface `first`."""
     if not lens.nearest_focus_m > 0:
         return None
     try:

@@ -61,12 +61,12 @@ class Overlap(ShortText):
 
 
 def is_glass(lens: Lens, surface: int) -> bool:
-    """True if the medium behind a refracting surface is not air."""
+    """Returns True if the medium behind a refracting surface is not air."""
     return lens.surfaces[surface].material.index(lens.wavelength_nm) != 1
 
 
 def faces_of(cut: Cut) -> tuple[Face, ...]:
-    """Refracting and reflecting faces, in the order of the light."""
+    """Returns the refracting and reflecting faces, in the order of the light."""
     holes = _holes(cut.lens)
     return tuple(
         Face(
@@ -82,14 +82,14 @@ def faces_of(cut: Cut) -> tuple[Face, ...]:
 
 
 def _curvature(cut: Cut, surface: int) -> float:
-    """Curvature at the vertex, in the plane of the drawing."""
+    """Returns the curvature at the vertex, in the plane of the drawing."""
     shape = cut.lens.surfaces[surface]
     is_x = cut.axis == 0 and shape.form is not None
     return 1 / shape.radius_of_curvature_x_mm if is_x else shape.curvature_per_mm
 
 
 def elements_of(cut: Cut) -> tuple[Element, ...]:
-    """Glass elements. Glass that light passes twice, before and after a mirror, is one element."""
+    """Returns the glass elements. Glass that light passes twice, before and after a mirror, is one element."""
     lens = cut.lens
     elements: dict[frozenset[tuple[float, float]], Element] = {}
     for i, j, direction in _glass(lens):
@@ -100,11 +100,14 @@ def elements_of(cut: Cut) -> tuple[Element, ...]:
 
 
 def blockers_of(cut: Cut) -> tuple[Blocker, ...]:
-    """Stop, apertures and central obstructions. Lines around an opening end slightly beyond the rim of the surface."""
+    """Returns the stop, apertures and central obstructions.
+
+    Lines around an opening end slightly beyond the rim of the surface.
+    """
     lens = cut.lens
     largest = max(surface.clear_semi_diameter_mm for surface in lens.surfaces)
     holes = _holes(lens)
-    found = []
+    blockers = []
     for i, (surface, z) in enumerate(zip(lens.surfaces, lens.vertices_mm, strict=True)):
         rim = surface.clear_semi_diameter_mm
         is_stop = surface.type == "stop"
@@ -120,12 +123,12 @@ def blockers_of(cut: Cut) -> tuple[Blocker, ...]:
         if blocked > 0:
             ends.append((-blocked, blocked))
         lines = tuple(cut.placed(i, (0.0, 0.0), pair) for pair in ends)
-        found.append(Blocker(i, is_stop, z, opening, outer, blocked, lines))
-    return tuple(found)
+        blockers.append(Blocker(i, is_stop, z, opening, outer, blocked, lines))
+    return tuple(blockers)
 
 
 def overlaps_of(lens: Lens) -> tuple[Overlap, ...]:
-    """Faces that overlap inside their rims, which is possible only with allow_overlap."""
+    """Returns the faces that overlap inside their rims, which is possible only with allow_overlap."""
     return tuple(
         Overlap(first, second, depth, radius, _zones(lens, first, second, radius))
         for first, second, depth, radius in lens.overlaps()
@@ -151,14 +154,16 @@ def _glass(lens: Lens) -> Iterator[tuple[int, int, int]]:
 
 
 def _hole_between(front: Surface, back: Surface) -> float:
-    """Semi-diameter of the hole in an element, which needs an obstruction on both faces; on one face alone it is an
-    opaque spot, not a hole."""
+    """Returns the semi-diameter of the hole in an element; 0 if there is none.
+
+    A hole requires an obstruction on both faces; on one face alone it is an opaque spot.
+    """
     hole = min(front.inner_semi_diameter_mm, back.inner_semi_diameter_mm)
     return hole if hole < min(front.clear_semi_diameter_mm, back.clear_semi_diameter_mm) else 0.0
 
 
 def _holes(lens: Lens) -> list[float]:
-    """Semi-diameters of the holes in the faces; 0: no hole."""
+    """Returns the semi-diameters of the holes in the faces; 0: no hole."""
     holes = [surface.inner_semi_diameter_mm if surface.type == "mirror" else 0.0 for surface in lens.surfaces]
     for i, j, _ in _glass(lens):
         hole = _hole_between(lens.surfaces[i], lens.surfaces[j])
@@ -167,7 +172,8 @@ def _holes(lens: Lens) -> list[float]:
 
 
 def _half(cut: Cut, surface: int, hole: float, side: int = 1) -> Points:
-    """Outline from the hole, or the axis, to the rim on one side. side: 1: upper, -1: lower."""
+    """Returns the outline of a face from the hole, or the axis, to the rim. side: 1 for the upper half, -1 for the
+    lower."""
     rim = cut.lens.surfaces[surface].clear_semi_diameter_mm
     angle = np.linspace(math.asin(min(hole / rim, 1)), 0.5 * math.pi, _HALF_PROFILE + 1)
     y = rim * np.sin(angle)
@@ -176,6 +182,7 @@ def _half(cut: Cut, surface: int, hole: float, side: int = 1) -> Points:
 
 
 def _parts(cut: Cut, surface: int, hole: float) -> tuple[Points, ...]:
+    """Returns the outline of a face, in two parts if it has a hole (semi-diameter `hole`)."""
     lower, upper = _half(cut, surface, hole, -1)[::-1], _half(cut, surface, hole)
     if hole > 0:
         return lower, upper
@@ -183,6 +190,7 @@ def _parts(cut: Cut, surface: int, hole: float) -> tuple[Points, ...]:
 
 
 def _polygons(cut: Cut, front: int, back: int, direction: int, hole: float) -> tuple[Points, ...]:
+    """Returns the outline of an element between two faces, as Element.polygons. direction: of the light along z."""
     halves = []
     for side in (1, -1):
         a, b = _half(cut, front, hole, side), _half(cut, back, hole, side)
@@ -196,11 +204,11 @@ def _polygons(cut: Cut, front: int, back: int, direction: int, hole: float) -> t
 
 
 def _edge(cut: Cut, front: int, back: int, direction: int, side: int) -> Points:
-    """Corner of the edge between two rims on one side, (0 or 1, 2): the smaller face is extended flat to the larger
-    rim.
+    """Returns the corner of an element's edge between two rims on one side, (1, 2): the smaller face is extended flat
+    to the larger rim.
 
-    There is no corner, and the edge is straight from rim to rim, if the flat would intersect the larger face, or if
-    surfaces are tilted or decentred.
+    Returns (0, 2), for an edge that is straight from rim to rim, if the rims are equal, if the flat would intersect the
+    larger face, or if surfaces are tilted or decentred.
     """
     rims = [cut.lens.surfaces[i].clear_semi_diameter_mm for i in (front, back)]
     if rims[0] == rims[1] or not cut.is_in_place:
@@ -217,6 +225,7 @@ def _edge(cut: Cut, front: int, back: int, direction: int, side: int) -> Points:
 
 
 def _zones(lens: Lens, first: int, second: int, radius: float) -> tuple[Points, ...]:
+    """Returns the polygons of an overlap, see Overlap. radius: distance from the axis of the deepest overlap, mm."""
     a, b = lens.surfaces[first], lens.surfaces[second]
     rims = a.clear_semi_diameter_mm, b.clear_semi_diameter_mm
     reach = max(rims) if radius > min(rims) else min(rims)

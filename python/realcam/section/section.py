@@ -1,4 +1,4 @@
-"""Meridional section of a lens as arrays."""
+"""The function cross_section(), which computes the meridional section of a lens as arrays for drawing."""
 
 from __future__ import annotations
 
@@ -35,16 +35,18 @@ class CrossSection(ShortText):
     bundles: tuple[RayBundle, ...]  #: by wavelength, then by field
 
     def drawn_paths(self, bundle: RayBundle) -> Points:
-        """(rays, points, 2): paths of a bundle, projected onto the drawing's plane. For a lens with tilted or decentred
-        surfaces, stops and apertures are omitted: such a plane may lie at a mirror, where the path would turn back to
-        it."""
+        """Returns the paths of a bundle, projected onto the drawing's plane, (rays, points, 2).
+
+        For a lens with tilted or decentred surfaces, points on stops and apertures are left out, because such a plane
+        may lie at a mirror, where the drawn path would go back and forth.
+        """
         if Cut(self.lens).is_in_place:
             return self.drawn(bundle.paths_mm)
         bending = [1 + i for i, surface in enumerate(self.lens.surfaces) if surface.type in ("refracting", "mirror")]
         return self.drawn(bundle.paths_mm[:, [0, *bending, -1]])
 
     def drawn(self, paths_mm: Points) -> Points:
-        """(..., 2): points (..., 3) of the lens frame, projected onto the drawing's plane."""
+        """Projects points (..., 3) of the lens frame onto the drawing's plane, (..., 2)."""
         return paths_mm[..., [2, PLANES[self.plane]]]
 
     @property
@@ -83,17 +85,18 @@ def cross_section(
     if rays < 0:
         raise InputError("the number of rays must be 0 or more")
     if rays_from == "film" and fields_deg is not None:
-        raise InputError("field angles are of rays from the object; rays from the film take shares of its corner")
+        raise InputError('fields_deg requires rays_from="object"')
     wavelengths = [lens.wavelength_nm] if wavelengths_nm is None else list(dict.fromkeys(wavelengths_nm))
     field_points: tuple[Field, ...] = ()
     bundles: tuple[RayBundle, ...] = ()
     if rays > 0:
-        span = lens.film_position_mm - min(lens.vertices_mm)
+        # Length of the rays in front of the lens.
+        reach_mm = 0.25 * (lens.film_position_mm - min(lens.vertices_mm))
         if not lens.is_rotational or plane == "xz":
             if rays_from == "film" or fields_deg is not None:
                 raise InputError(
-                    "rays from the film and field angles are drawn only of rotationally symmetric lenses, in the plane "
-                    "yz; use rays from the object, with fields relative to the film's corner"
+                    'rays_from="film" and fields_deg require a rotationally symmetric lens and the plane "yz"; use '
+                    'rays_from="object" and fields'
                 )
             field_points = fields_along(lens, fields, cut.axis)
         elif fields_deg is not None:
@@ -101,9 +104,9 @@ def cross_section(
         else:
             field_points = fields_at(lens, fields, object_distance_m)
         if rays_from == "object":
-            bundles = bundles_from_object(cut, field_points, wavelengths, rays, 0.25 * span, object_distance_m)
+            bundles = bundles_from_object(cut, field_points, wavelengths, rays, reach_mm, object_distance_m)
         else:
-            bundles = bundles_from_film(lens, field_points, wavelengths, rays, 0.25 * span)
+            bundles = bundles_from_film(lens, field_points, wavelengths, rays, reach_mm)
     return CrossSection(
         lens,
         elements_of(cut),

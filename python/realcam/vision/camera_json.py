@@ -53,7 +53,7 @@ def camera_json(camera: Camera, fits: Iterable[CameraModelFit] = ()) -> dict[str
 
 
 def save_camera_json(path: str | os.PathLike[str], camera: Camera, fits: Iterable[CameraModelFit] = ()) -> None:
-    """Writes camera_json to a file. Raises InputError, ImageFileError."""
+    """Writes the values of camera_json to a JSON file. Raises InputError, ImageFileError."""
     write_whole(path, (json.dumps(camera_json(camera, fits), indent=1) + "\n").encode())
 
 

@@ -27,18 +27,20 @@ NAMES = {
 def save_colmap(folder: str | os.PathLike[str], pictures: Mapping[str, Camera], model: str = "opencv5") -> None:
     """Writes cameras.txt, images.txt and an empty points3D.txt for a mapping of picture names to cameras.
 
-    folder: created if missing. model: see fit_camera_model; each combination of lens, film and camera model is fitted
-    once. "opencv4" becomes COLMAP's OPENCV, "opencv5" and "opencv8" FULL_OPENCV. Poses have their origin at the centre
-    of the entrance pupil. Raises InputError, ImageFileError.
+    folder: created if missing. model: see fit_camera_model; it is fitted once for each combination of lens, film and
+    Camera.model. "pinhole" becomes COLMAP's PINHOLE, "opencv4" OPENCV, "opencv5" and "opencv8" FULL_OPENCV, and
+    "fisheye" OPENCV_FISHEYE. Poses are in metres, with their origin at the centre of the entrance pupil.
+
+    Raises InputError, ImageFileError.
     """
     fits = _Fits(model)
-    ids: dict[_Kind, int] = {}
+    ids: dict[_CameraKey, int] = {}
     images = []
     for i, (name, camera) in enumerate(pictures.items(), start=1):
-        number = ids.setdefault(_kind_of(camera), len(ids) + 1)
-        images.append(_image_line(i, camera.world_to_camera, number, name))
+        camera_id = ids.setdefault(_key_of(camera), len(ids) + 1)
+        images.append(_image_line(i, camera.world_to_camera, camera_id, name))
         fits.line_of(camera)
-    _write(folder, [f"{i} {fits.lines[kind]}" for kind, i in ids.items()], images, {})
+    _write(folder, [f"{i} {fits.lines[key]}" for key, i in ids.items()], images, {})
 
 
 def save_colmap_of_rig(
@@ -46,12 +48,12 @@ def save_colmap_of_rig(
 ) -> None:
     """Writes the files of save_colmap for a rigid rig, plus rigs.txt and frames.txt (COLMAP 3.12 and later).
 
-    moments: for each moment's picture name, the rig's cameras by name; a picture's path is "camera/moment". The first
-    camera is COLMAP's reference sensor. Raises InputError, ImageFileError.
+    moments: for each moment's picture name, the rig's cameras by name; a picture's path is "camera/moment". model: as
+    for save_colmap. The first camera is COLMAP's reference sensor. Raises InputError, ImageFileError.
     """
     fits = _Fits(model)
     if not moments:
-        raise InputError("COLMAP wants the pictures of one moment at least")
+        raise InputError("a COLMAP model of a rig needs the pictures of at least one pose")
     rig = next(iter(moments.values()))
     cameras = [f"{i} {fits.line_of(camera)}" for i, camera in enumerate(rig.values(), start=1)]
     first, *others = (camera.world_to_camera for camera in rig.values())
@@ -74,10 +76,10 @@ _RIGS = (
 )
 _FRAMES = "FRAME_ID RIG_ID QW QX QY QZ TX TY TZ NUM_DATA_IDS DATA_IDS[] (SENSOR_TYPE SENSOR_ID DATA_ID)"
 
-_Kind = tuple[Lens, Film, str]
+_CameraKey = tuple[Lens, Film, str]
 
 
-def _kind_of(camera: Camera) -> _Kind:
+def _key_of(camera: Camera) -> _CameraKey:
     return camera.lens, camera.film, camera.model
 
 
@@ -89,18 +91,19 @@ class _Fits:
             model_named(model)  # raises for an unknown name
             raise InputError(f"COLMAP has no camera model {model}; expected one of {', '.join(NAMES)}")
         self._model = model
-        self.lines: dict[_Kind, str] = {}
+        self.lines: dict[_CameraKey, str] = {}
 
     def line_of(self, camera: Camera) -> str:
-        kind = _kind_of(camera)
-        if kind not in self.lines:
-            self.lines[kind] = _camera_line(fit_camera_model(camera, self._model))
-        return self.lines[kind]
+        """Returns the line of a camera without its id; fits the camera model if no equal camera has been fitted."""
+        key = _key_of(camera)
+        if key not in self.lines:
+            self.lines[key] = _camera_line(fit_camera_model(camera, self._model))
+        return self.lines[key]
 
 
 def _image_line(number: int, pose: Pose, camera: int, name: str) -> str:
     if not name or any(c.isspace() for c in name):
-        raise InputError(f"COLMAP's text files hold no names with spaces, as {name!r:.60}")
+        raise InputError(f"names in COLMAP's text files must not be empty or contain spaces; one is {name!r:.60}")
     return f"{number} {_pose_text(pose)} {camera} {name}\n"  # followed by an empty line for POINTS2D
 
 

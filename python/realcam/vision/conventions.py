@@ -16,14 +16,17 @@ OPENCV_PIXEL_SHIFT = -0.5
 
 
 def opencv_matrix(camera_matrix: Array) -> Array:
-    """Returns K in OpenCV's pixel coordinates."""
+    """Returns a (3, 3) camera matrix K of Camera.camera_matrix in OpenCV's pixel coordinates."""
     shifted: Array = camera_matrix.copy()
     shifted[:2, 2] += OPENCV_PIXEL_SHIFT
     return shifted
 
 
 def opengl_pose(rotation: Array, translation: Array) -> Array:
-    """Returns the (4, 4) matrix from OpenGL camera axes to the scene."""
+    """Returns the (4, 4) matrix from OpenGL camera axes to the scene.
+
+    rotation, translation: (R, t) of Camera.world_to_camera, in metres.
+    """
     pose = np.eye(4)
     pose[:3, :3] = rotation.T @ np.diag([1.0, -1.0, -1.0])
     pose[:3, 3] = -rotation.T @ translation
@@ -34,7 +37,9 @@ Pose = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def relative_pose(pose: Pose, seen_from: Pose) -> Pose:
-    """Returns (R, t) from the camera axes of `seen_from` to those of `pose`; both are given as (R, t) from the
-    scene."""
-    turn = pose[0] @ seen_from[0].T
-    return turn, pose[1] - turn @ seen_from[1]
+    """Returns (R, t) from the camera axes of `seen_from` to those of `pose`, in metres.
+
+    Both poses are given as (R, t) from the scene to the camera's axes, as by Camera.world_to_camera.
+    """
+    rotation = pose[0] @ seen_from[0].T
+    return rotation, pose[1] - rotation @ seen_from[1]

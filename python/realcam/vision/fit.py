@@ -17,13 +17,11 @@ from .regularised import condition_of, nearest_coefficients
 Array = NDArray[np.float64]
 
 GRID = 49  # sample points along the longer side of the film, including its edges
-LEAST_LIGHT = (
-    0.1  # of the light at the film centre; below it no pattern is recognised, and vignetting alone decides what is seen
-)
-
-
+# Smallest illuminance of a fitted film point, as a fraction of that at the film centre. In darker corners a calibration
+# pattern is not recognised, and the ray of the centre of light depends mostly on vignetting.
+MIN_LIGHT = 0.1
 # Improvement of the held-out RMS that justifies more coefficients; no calibration resolves less.
-NOTABLE_PX = 0.01
+SIGNIFICANT_PX = 0.01
 SIMPLER = ("pinhole", "opencv4", "opencv5")  # models with fewer coefficients than opencv8
 
 
@@ -33,11 +31,11 @@ class CameraModelFit:
 
     model: name of the model. camera: the camera to which it was fitted. camera_matrix: (3, 3), K in the pixel
     coordinates of Camera.project. coefficients: k1, k2, ... of the model (realcam.vision.models). distance_m: distance
-    of the fitted points from the centre of the entrance pupil. through: see Camera.project. pixels: (N, 2), film
-    points. residuals: (N, 2), projection of the model minus that of the lens, in pixels. largest_angle_deg: largest
-    angle to the axis up to which the model's radius increases, so that it can be inverted. condition: condition number
-    of the model's terms over the film (realcam.vision.regularised); if it is large, other coefficients fit nearly as
-    well.
+    of the fitted points from the centre of the entrance pupil, in metres. through: see Camera.project. pixels: (N, 2),
+    pixel positions of the fitted points. residuals: (N, 2), projection by the model minus that by the lens, in pixels.
+    largest_angle_deg: largest angle to the axis up to which the model's radius increases with the angle, so that it can
+    be inverted. condition: condition number of the model's terms over the film (realcam.vision.regularised); if it is
+    large, very different coefficients fit nearly as well.
     """
 
     model: str
@@ -65,7 +63,7 @@ class CameraModelFit:
             ("fx, fy", f"{K[0, 0]:.6g}, {K[1, 1]:.6g} px"),
             ("cx, cy", f"{K[0, 2]:.6g}, {K[1, 2]:.6g} px"),
             *((f"k{index}", f"{value:.6g}") for index, value in enumerate(self.coefficients, 1)),
-            ("residuals", f"{self.rms_px:.3g} px RMS, {self.max_px:.3g} px at most, at {len(self.pixels)} places"),
+            ("residuals", f"{self.rms_px:.3g} px RMS, {self.max_px:.3g} px at most, at {len(self.pixels)} points"),
             ("largest angle", f"{self.largest_angle_deg:.4g}°"),
             ("condition", f"{self.condition:.3g}"),
         ]
@@ -94,8 +92,8 @@ class CameraModelFit:
     def project(self, points_m: ArrayLike) -> Array:
         """Projects (N, 3) scene points to (N, 2) pixels, as Camera.project; NaN beyond largest_angle_deg."""
         rotation, translation = self.camera.world_to_camera
-        seen = np.asarray(points_m, dtype=float) @ rotation.T + translation
-        return projected(model_named(self.model), self.camera_matrix, self.coefficients, seen)
+        points = np.asarray(points_m, dtype=float) @ rotation.T + translation
+        return projected(model_named(self.model), self.camera_matrix, self.coefficients, points)
 
     def unproject(self, pixels: ArrayLike) -> Array:
         """Returns (N, 3) unit directions in the scene, from Camera.entrance_pupil_position_m, of (N, 2) pixels.
@@ -114,8 +112,8 @@ class CameraModelFit:
             low, high = np.where(below, middle, low), np.where(below, high, middle)
         angle = np.where(radius <= self._largest_radius(), 0.5 * (low + high), np.nan)
         across = np.sin(angle) / np.where(radius > 0, radius, 1)
-        seen = np.stack([across * plane[:, 0], across * plane[:, 1], np.cos(angle)], axis=1)
-        directions: Array = seen @ self.camera.world_to_camera[0]
+        in_camera = np.stack([across * plane[:, 0], across * plane[:, 1], np.cos(angle)], axis=1)
+        directions: Array = in_camera @ self.camera.world_to_camera[0]
         return directions
 
     def residuals_at(self, distance_m: float) -> Array:
@@ -127,12 +125,12 @@ class CameraModelFit:
         return self._residuals_of(*calibration_points(self.camera, distance_m, self.through))
 
     def held_out_rms_px(self) -> float:
-        """RMS length of the residuals at film points half-way between the fitted ones, in pixels."""
+        """Returns the RMS length of the residuals at film points half-way between the fitted ones, in pixels."""
         residuals = self._residuals_of(*calibration_points(self.camera, self.distance_m, self.through, between=True))
         return float(np.sqrt(np.mean(np.sum(residuals**2, axis=1))))
 
-    def _residuals_of(self, seen: Array, pixels: Array) -> Array:
-        return projected(model_named(self.model), self.camera_matrix, self.coefficients, seen) - pixels
+    def _residuals_of(self, points: Array, pixels: Array) -> Array:
+        return projected(model_named(self.model), self.camera_matrix, self.coefficients, points) - pixels
 
     def opencv(self) -> tuple[Array, Array]:
         """Returns (K, coefficients) in OpenCV's convention, in which the centre of the first pixel is (0, 0).
@@ -143,7 +141,7 @@ class CameraModelFit:
         return conventions.opencv_matrix(self.camera_matrix), np.array(coefficients)
 
     def _largest_radius(self) -> float:
-        limit = np.array(np.radians(self.largest_angle_deg) * (1 - 1e-9))  # short of a pole
+        limit = np.array(np.radians(self.largest_angle_deg) * (1 - 1e-9))  # just below a possible pole
         model = model_named(self.model)
         with np.errstate(invalid="ignore"):
             radius = float(model.radius(model.argument(limit), self.coefficients))
@@ -167,7 +165,8 @@ def fit_camera_model(
     Among all coefficients of "opencv8" within a hundredth of a pixel of the best fit, those closest to "opencv5" are
     returned. Warns if a model with fewer coefficients predicts held-out points equally well, to a hundredth of a pixel.
 
-    Raises InputError, also if the film sees 90 degrees off the axis and the model is a function of the tangent.
+    Raises InputError, also if the model is a function of the tangent and the field of view reaches 90 degrees off the
+    axis.
     """
     fit = _fitted(camera, model_named(model), distance_m, through)
     if model_named(model).denominator:
@@ -179,9 +178,9 @@ def _warn_of_too_many_terms(fit: CameraModelFit, distance_m: float | None) -> No
     rms = fit.held_out_rms_px()
     for name in SIMPLER:
         simpler = _fitted(fit.camera, model_named(name), distance_m, fit.through).held_out_rms_px()
-        if simpler - rms < NOTABLE_PX:
+        if simpler - rms < SIGNIFICANT_PX:
             warnings.warn(
-                f"{name} predicts places between those that were fitted as well as {fit.model}: {simpler:.2g} and "
+                f"{name} predicts points between the fitted ones as well as {fit.model}: {simpler:.2g} and "
                 f'{rms:.2g} pixels RMS; fewer terms are enough for lens "{fit.camera.lens.name:.60}"',
                 stacklevel=3,
             )
@@ -193,18 +192,18 @@ def _fitted(camera: Camera, from_model: RadialModel, distance_m: float | None, t
 
     if distance_m is None:
         distance_m = _focus_from_pupil_m(camera)
-    seen, pixels = calibration_points(camera, distance_m, through)
+    points, pixels = calibration_points(camera, distance_m, through)
     start = camera.camera_matrix
-    s = from_model.argument(_angles(seen))
+    s = from_model.argument(_angles(points))
     if np.isnan(s).any():
         raise InputError(
-            f'the camera model {from_model.name} has no place for lens "{camera.lens.name}": its film sees 90 degrees '
-            "to the side and more; use fisheye, f_theta or a smaller film"
+            f'the camera model {from_model.name} cannot describe lens "{camera.lens.name}": its field of view reaches '
+            "90 degrees off the axis; use fisheye, f_theta or a smaller film"
         )
     r = np.hypot(*((pixels - start[:2, 2]) / np.diag(start)[:2]).T)
 
     is_round = camera.lens.is_rotational
-    of_matrix = 1 if is_round else 4  # number of leading parameters that describe the camera matrix
+    matrix_terms = 1 if is_round else 4  # number of leading parameters that describe the camera matrix
 
     def matrix(parameters: Array) -> Array:
         scaled: Array = start.copy()
@@ -217,7 +216,7 @@ def _fitted(camera: Camera, from_model: RadialModel, distance_m: float | None, t
         return scaled
 
     def residuals(parameters: Array) -> Array:
-        return _shown(from_model, matrix(parameters), parameters[of_matrix:], seen) - pixels
+        return _projected_unchecked(from_model, matrix(parameters), parameters[matrix_terms:], points) - pixels
 
     # Tight tolerances: the sum of squares is flat near its minimum, where coefficients compensate each other.
     tolerances = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15}
@@ -231,52 +230,57 @@ def _fitted(camera: Camera, from_model: RadialModel, distance_m: float | None, t
     # Numerator and denominator may have adjacent roots within the picture, that is, a pole between the fitted points.
     # The guess without a denominator has no pole.
     candidates = [*found, *guesses]
-    widest = _angles(seen).max()
-    sound = [p for p in candidates if from_model.largest_angle(p[of_matrix:]) >= widest] or candidates
+    widest = _angles(points).max()
+    sound = [p for p in candidates if from_model.largest_angle(p[matrix_terms:]) >= widest] or candidates
     best = min(sound, key=lambda p: np.sum(residuals(p) ** 2))
     if from_model.denominator:
         near = nearest_coefficients(from_model, residuals, best, guesses[-1], float(s.max()))
-        if from_model.largest_angle(near[of_matrix:]) >= widest:
+        if from_model.largest_angle(near[matrix_terms:]) >= widest:
             best = near
     return CameraModelFit(
         model=from_model.name,
         camera=camera,
         camera_matrix=matrix(best),
-        coefficients=best[of_matrix:],
+        coefficients=best[matrix_terms:],
         distance_m=distance_m,
         through=through,
         pixels=pixels,
         residuals=residuals(best),
-        largest_angle_deg=float(np.degrees(from_model.largest_angle(best[of_matrix:]))),
+        largest_angle_deg=float(np.degrees(from_model.largest_angle(best[matrix_terms:]))),
         condition=condition_of(from_model, s, r),
     )
 
 
 def _first_guesses(model: RadialModel, s: Array, r: Array) -> list[Array]:
-    """Starting values (f, coefficients): the linear least-squares solution of r (1 + ...) = f s (1 + ...), with and
-    without its denominator."""
-    above = 1 + len(model.numerator)
+    """Returns starting values (f, coefficients), the solutions of r (1 + ...) = f s (1 + ...) by linear least squares.
+
+    The first has the model's denominator, the last does not.
+    """
+    numerator_terms = 1 + len(model.numerator)
     columns = model.linear_terms(s, r)
     guesses = []
-    for count in sorted({above, columns.shape[1]}, reverse=True):
-        found, *_ = np.linalg.lstsq(columns[:, :count], r, rcond=None)
-        found = np.append(found, np.zeros(columns.shape[1] - count))
-        guesses.append(np.concatenate([found[:1], found[1:above] / found[0], found[above:]]))
+    for count in sorted({numerator_terms, columns.shape[1]}, reverse=True):
+        solution, *_ = np.linalg.lstsq(columns[:, :count], r, rcond=None)
+        solution = np.append(solution, np.zeros(columns.shape[1] - count))
+        f, numerator, denominator = np.split(solution, [1, numerator_terms])
+        guesses.append(np.concatenate([f, numerator / f[0], denominator]))
     return guesses
 
 
 def calibration_points(
     camera: Camera, distance_m: float, through: str = "light", between: bool = False
 ) -> tuple[Array, Array]:
-    """Returns (seen, pixels): (N, 2) pixels of a grid over the film that receive at least a tenth of the light at the
-    film centre, and the (N, 3) points that project to them at a distance from the centre of the entrance pupil, in the
-    axes of world_to_camera; unit directions at infinity. between: uses the centres of the grid's cells. Raises
-    InputError.
+    """Returns (points, pixels) for fitting a camera model.
+
+    pixels: (N, 2), a grid over the film, without positions that receive less than a tenth of the light at the film
+    centre. points: (N, 3), the points that project to these pixels, at distance_m metres from the centre of the
+    entrance pupil, in the axes of Camera.world_to_camera; unit directions if the distance is infinite. between: uses
+    the centres of the grid's cells instead of its points. Raises InputError.
     """
     if not distance_m > 0:
         raise InputError("distance_m must be a positive number of metres, or inf")
     if camera.motion:
-        raise InputError("a camera model is fitted to a camera that stands still; replace(motion=[]) gives one")
+        raise InputError("a camera model is fitted to a camera without motion; replace(motion=[]) gives one")
     columns, rows = camera.film.resolution
     width, height = camera.film.width_mm, camera.film.height_mm
     counts = [max(3, round(GRID * side / max(width, height))) for side in (width, height)]
@@ -286,42 +290,45 @@ def calibration_points(
     grid = np.meshgrid(*steps)
     pixels = np.stack(grid, axis=-1).reshape(-1, 2)
     origins, directions, light = camera.ray(pixels, through=through, return_light=True)
-    lit = ~np.isnan(directions[:, 0]) & (light >= LEAST_LIGHT)
-    pixels, origins, directions = pixels[lit], origins[lit], directions[lit]
+    is_lit = ~np.isnan(directions[:, 0]) & (light >= MIN_LIGHT)
+    pixels, origins, directions = pixels[is_lit], origins[is_lit], directions[is_lit]
     rotation, translation = camera.world_to_camera
     directions = directions @ rotation.T
     if np.isinf(distance_m):
         return directions, pixels
     # Intersection of each ray with the sphere about the centre of the entrance pupil.
-    apart = origins @ rotation.T + translation
-    along = np.sum(apart * directions, axis=1)
-    rest = along**2 - np.sum(apart**2, axis=1) + distance_m**2
-    if (rest < 0).any() or (np.sqrt(rest) < along).any():
+    from_pupil = origins @ rotation.T + translation
+    along = np.sum(from_pupil * directions, axis=1)
+    discriminant = along**2 - np.sum(from_pupil**2, axis=1) + distance_m**2
+    if (discriminant < 0).any() or (np.sqrt(discriminant) < along).any():
         raise InputError(f"distance_m is {distance_m}, which lies inside the lens; use a larger one")
-    return apart + (np.sqrt(rest) - along)[:, None] * directions, pixels
+    return from_pupil + (np.sqrt(discriminant) - along)[:, None] * directions, pixels
 
 
-def projected(model: RadialModel, camera_matrix: Array, coefficients: Array, seen: Array) -> Array:
+def projected(model: RadialModel, camera_matrix: Array, coefficients: Array, points: Array) -> Array:
     """Projects (N, 3) points in camera axes to (N, 2) pixels; NaN where the model is undefined or not monotonic."""
-    pixels = _shown(model, camera_matrix, coefficients, seen)
-    pixels[_angles(seen) > model.largest_angle(coefficients)] = np.nan
+    pixels = _projected_unchecked(model, camera_matrix, coefficients, points)
+    pixels[_angles(points) > model.largest_angle(coefficients)] = np.nan
     return pixels
 
 
-def _shown(model: RadialModel, camera_matrix: Array, coefficients: Array, seen: Array) -> Array:
-    radius = model.radius(model.argument(_angles(seen)), coefficients)
-    across = np.hypot(seen[:, 0], seen[:, 1])
+def _projected_unchecked(model: RadialModel, camera_matrix: Array, coefficients: Array, points: Array) -> Array:
+    """Projects points in camera axes to pixels, also where the model is not monotonic."""
+    radius = model.radius(model.argument(_angles(points)), coefficients)
+    across = np.hypot(points[:, 0], points[:, 1])
     share = radius / np.where(across > 0, across, 1)
-    pixels: Array = share[:, None] * seen[:, :2] * np.diag(camera_matrix)[:2] + camera_matrix[:2, 2]
+    pixels: Array = share[:, None] * points[:, :2] * np.diag(camera_matrix)[:2] + camera_matrix[:2, 2]
     return pixels
 
 
-def _angles(seen: Array) -> Array:
-    angles: Array = np.arctan2(np.hypot(seen[:, 0], seen[:, 1]), seen[:, 2])
+def _angles(points: Array) -> Array:
+    """Returns the angles of points in camera axes to the forward axis, in radians."""
+    angles: Array = np.arctan2(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
     return angles
 
 
 def _focus_from_pupil_m(camera: Camera) -> float:
+    """Returns the distance of the plane in focus from the centre of the entrance pupil; inf if either is infinite."""
     if np.isinf(camera.lens.focus_distance_m) or camera.entrance_pupil_position_m is None:
         return np.inf
     pupil = np.linalg.norm(np.subtract(camera.entrance_pupil_position_m, camera.position))

@@ -29,7 +29,7 @@ class RadialModel:
 
     @property
     def terms(self) -> int:
-        """The number of coefficients."""
+        """Number of coefficients."""
         return len(self.numerator) + len(self.denominator)
 
     def argument(self, angle: Array) -> Array:
@@ -47,31 +47,31 @@ class RadialModel:
         return values
 
     def linear_terms(self, s: Array, r: Array) -> Array:
-        """Columns of the linear system for r: r is their sum weighted by f, f k_i and k_j."""
+        """Returns the columns of the linear system for r: r is their sum weighted by f, f k_i and k_j."""
         top = [s ** (power + 1) for power in (0, *self.numerator)]
         return np.stack([*top, *(-r * s**power for power in self.denominator)], axis=-1)
 
     def largest_angle(self, coefficients: Array) -> float:
-        """Largest angle in radians up to which r increases with the angle."""
+        """Returns the largest angle in radians up to which r increases with the angle."""
         top, bottom = self._polynomials(coefficients)
         identity = np.polynomial.Polynomial([0, 1])
         slope = (identity * top).deriv() * bottom - identity * top * bottom.deriv()
         # Rounding may move a double root slightly off the real axis.
-        turns = [
+        limits = [
             root.real
             for root in [*slope.roots(), *bottom.roots()]
             if root.real > 0 and abs(root.imag) < 1e-9 * abs(root)
         ]
         if self.by_tangent:
-            return float(np.arctan(min(turns))) if turns else np.pi / 2
-        return float(min([*turns, np.pi]))
+            return float(np.arctan(min(limits))) if limits else np.pi / 2
+        return float(min([*limits, np.pi]))
 
     def _polynomials(self, coefficients: Array) -> tuple[np.polynomial.Polynomial, np.polynomial.Polynomial]:
-        above = dict(zip(self.numerator, coefficients, strict=False))
-        below = dict(zip(self.denominator, coefficients[len(self.numerator) :], strict=True))
+        numerator = dict(zip(self.numerator, coefficients, strict=False))
+        denominator = dict(zip(self.denominator, coefficients[len(self.numerator) :], strict=True))
         return tuple(  # type: ignore[return-value]
             np.polynomial.Polynomial([1.0, *(powers.get(k, 0.0) for k in range(1, max(powers, default=0) + 1))])
-            for powers in (above, below)
+            for powers in (numerator, denominator)
         )
 
 
@@ -102,7 +102,7 @@ def distortion_coefficients(model: RadialModel, coefficients: Array) -> list[flo
     """
     k = [float(value) for value in coefficients]
     if model.name == "f_theta":
-        raise InputError("OpenCV and COLMAP have no model f_theta; fisheye is the nearest that they have")
+        raise InputError("OpenCV and COLMAP have no model f_theta; their closest model is fisheye")
     if model.name == "fisheye" or not k:
         return k
     return [*k[:2], 0.0, 0.0, *k[2:]]

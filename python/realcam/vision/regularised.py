@@ -26,44 +26,46 @@ def nearest_coefficients(
 ) -> Array:
     """Returns parameters that fit nearly as well as `best` and are as close as possible to the polynomial model.
 
-    residuals: maps parameters to (N, 2) pixels; the last parameters are the model's coefficients. start: parameters
-    with a denominator of 1. largest_s: largest s on the film, by whose powers coefficients are scaled.
+    residuals: maps parameters to (N, 2) pixels; the last parameters are the model's coefficients. best: parameters of
+    the best fit. start: parameters with a denominator of 1. largest_s: largest s on the film; its powers scale the
+    coefficients.
     """
     from scipy import optimize  # slow to load
 
-    terms, below = model.terms, len(model.denominator)
+    terms, denominator_terms = model.terms, len(model.denominator)
     sizes = largest_s ** np.array([*model.numerator, *model.denominator], dtype=float)
 
     def rms(parameters: Array) -> float:
         return float(np.sqrt(np.mean(np.sum(residuals(parameters) ** 2, axis=1))))
 
     def solved(f: Callable[[Array], Array], guess: Array) -> Array:
-        found: Array = optimize.least_squares(f, guess, method="lm", x_scale="jac", xtol=1e-12, ftol=1e-12).x
-        return found
+        solution: Array = optimize.least_squares(f, guess, method="lm", x_scale="jac", xtol=1e-12, ftol=1e-12).x
+        return solution
 
-    none = np.zeros(below)
-    polynomial = np.append(solved(lambda p: residuals(np.append(p, none)).ravel(), start[:-below]), none)
+    zeros = np.zeros(denominator_terms)
+    numerator = solved(lambda p: residuals(np.append(p, zeros)).ravel(), start[:-denominator_terms])
+    polynomial = np.append(numerator, zeros)
     allowed = max(rms(best) + ALLOWED_PX, ALLOWED_SHARE * rms(best))
-    found = polynomial
-    # Continuation from a strong to a weak penalty does not jump to solutions in which factors cancel.
+    parameters = polynomial
+    # The penalty falls gradually, so that the solution does not jump to one in which factors cancel.
     for weight in np.geomspace(1, 1e-6, 19):
-        if rms(found) <= allowed:
-            return found
+        if rms(parameters) <= allowed:
+            return parameters
 
-        def penalised(parameters: Array, weight: float = weight) -> Array:
-            shown = residuals(parameters)
-            change = sizes * (parameters - polynomial)[-terms:]
-            return np.concatenate([shown.ravel(), weight * np.sqrt(len(shown)) * change])
+        def penalised(trial: Array, weight: float = weight) -> Array:
+            errors = residuals(trial)
+            change = sizes * (trial - polynomial)[-terms:]
+            return np.concatenate([errors.ravel(), weight * np.sqrt(len(errors)) * change])
 
-        found = solved(penalised, found)
+        parameters = solved(penalised, parameters)
     return best
 
 
 def condition_of(model: RadialModel, s: Array, r: Array) -> float:
-    """Condition number of the model's linear terms over the film, with columns normalised to unit length.
+    """Returns the condition number of the model's linear terms over the film, with columns normalised to unit length.
 
-    Compensating errors of the coefficients may be larger than the relative error of the projection by this factor. The
-    best value is 1.
+    Errors of the coefficients that compensate each other may be larger than the relative error of the projection by
+    this factor. The best value is 1.
     """
     columns = model.linear_terms(s, r)
     return float(np.linalg.cond(columns / np.linalg.norm(columns, axis=0)))

@@ -38,9 +38,11 @@ UNMOVED: Matrix = tuple(tuple(row) for row in np.eye(4).tolist())
 class RigCamera:
     """A camera of a rig, with its sensor and filter.
 
-    camera: posed in the frame of the rig. sensor: makes raw images from the film's exposure. spectral_filter: filter on
-    that sensor, pairs of a wavelength in nm and a transmission from 0 to 1, interpolated linearly and 0 outside; ():
-    no filter. Raises InputError.
+    camera: posed in the frame of the rig. sensor: makes raw images from the film's exposure; None: no raw images.
+    spectral_filter: filter on that sensor, pairs of a wavelength in nm and a transmission from 0 to 1, interpolated
+    linearly and 0 outside; (): no filter.
+
+    Raises InputError.
     """
 
     camera: Camera
@@ -59,7 +61,7 @@ class RigCamera:
         object.__setattr__(self, "spectral_filter", table)
         if table and self.sensor is None:
             raise InputError("spectral_filter: the camera has no sensor for which light could be filtered")
-        self.filtered_sensor  # noqa: B018 - raises for an invalid filter
+        self.filtered_sensor  # noqa: B018 - raises InputError for an invalid filter
 
     def __setstate__(self, state: Any) -> None:
         set_checked_state(self, state, hash)
@@ -71,7 +73,7 @@ class RigCamera:
 
     @property
     def filtered_sensor(self) -> Sensor | None:
-        """The sensor with the filter multiplied into its cover glass."""
+        """The sensor with the filter multiplied into its cover glass; None: no sensor."""
         if self.sensor is None or not self.spectral_filter:
             return self.sensor
         tables = [np.array(table) for table in (self.spectral_filter, self.sensor.cover_glass) if len(table)]
@@ -83,7 +85,10 @@ class RigCamera:
 
     @property
     def filter_factor(self) -> float:
-        """Ratio of the sensor's responses to white light (D65) with and without filter, 0 to 1. Raises InputError."""
+        """Ratio of the sensor's responses to white light (D65) with and without the filter, 0 to 1.
+
+        It is that of the channel with the largest response, and 1 without a sensor. Raises InputError.
+        """
         if self.sensor is None or self.filtered_sensor is None:
             return 1.0
         with_filter, without = (
@@ -99,9 +104,11 @@ class Rig:
     rig = rc.Rig.stereo(camera, baseline_m=0.12)
     images = rig.moved(scene_from_rig).render(scene)  # {"left": ..., "right": ...}
 
-    members: cameras, posed in the frame of the rig, Camera or RigCamera. scene_from_rig: (4, 4), pose of the rig in the
-    scene: a rotation and a translation in metres. times_s: for a rig that moves while shutters are open, the K times in
-    s of the matrices (K, 4, 4). Raises InputError.
+    members: cameras by name, Camera or RigCamera, posed in the frame of the rig. scene_from_rig: (4, 4), pose of the
+    rig in the scene: a rotation and a translation in metres. times_s: for a rig that moves while shutters are open, the
+    K times in seconds at which scene_from_rig, then (K, 4, 4), gives the pose; (): the rig does not move.
+
+    Raises InputError.
     """
 
     members: Mapping[str, RigCamera]
@@ -121,8 +128,8 @@ class Rig:
         poses = _rigid(self.scene_from_rig, len(self.times_s))
         object.__setattr__(self, "scene_from_rig", _nested(poses))
         if self.times_s and any(member.camera.motion for member in members.values()):
-            raise InputError("a rig that moves bears cameras that stand still in it; one of them has a motion")
-        self.cameras  # noqa: B018 - raises for times that are out of order
+            raise InputError("the cameras of a moving rig must not move within it; one of them has a motion")
+        self.cameras  # noqa: B018 - raises InputError for times that are out of order
 
     def __hash__(self) -> int:
         return hash((tuple(self.members.items()), self.scene_from_rig, self.times_s))
@@ -135,26 +142,28 @@ class Rig:
 
     @classmethod
     def stereo(cls, camera: Camera, *, baseline_m: float, toe_in_deg: float = 0.0) -> Rig:
-        """A stereo rig of two copies of a camera, "left" and "right" of its position.
+        """Returns a stereo rig of two copies of a camera, named "left" and "right" after the sides of its position.
 
         baseline_m: distance between the film centres. toe_in_deg: rotation of each camera towards the other, about its
-        film centre. The frame of the rig is the camera's: x right, y up, z backward. Raises InputError.
+        film centre. The frame of the rig is the camera's: x right, y up, z backward, origin at the film centre.
+
+        Raises InputError.
         """
         if not 0 < baseline_m < np.inf:
             raise InputError(f"baseline_m must be a positive number of metres, not {baseline_m!r:.20}")
         if camera.motion:
-            raise InputError("a stereo rig is made of a camera that stands still; moved() takes the rig along")
-        turn = np.radians(toe_in_deg)
+            raise InputError("a stereo rig needs a camera without motion; moved() gives the rig a motion")
+        toe_in = np.radians(toe_in_deg)
         members = {}
         for name, side in (("left", -1.0), ("right", 1.0)):
             x = 0.5 * side * baseline_m
-            ahead = (x - side * np.sin(turn), 0.0, -np.cos(turn))
-            members[name] = RigCamera(camera.replace(position=(x, 0, 0), look_at=ahead, up=(0, 1, 0)))
+            look_at = (x - side * np.sin(toe_in), 0.0, -np.cos(toe_in))
+            members[name] = RigCamera(camera.replace(position=(x, 0, 0), look_at=look_at, up=(0, 1, 0)))
         return cls(members, _pose_of(camera))
 
     @property
     def cameras(self) -> dict[str, Camera]:
-        """The cameras, posed in the scene."""
+        """The cameras by name, posed in the scene."""
         return {name: _placed(member.camera, self._poses, self.times_s) for name, member in self.members.items()}
 
     @property
@@ -163,11 +172,14 @@ class Rig:
         return poses
 
     def moved(self, scene_from_rig: ArrayLike, times_s: Sequence[float] = ()) -> Rig:
-        """The rig in another pose or motion: scene_from_rig and times_s as for Rig."""
+        """Returns the rig in another pose or motion. scene_from_rig, times_s: as for Rig. Raises InputError."""
         return replace(self, scene_from_rig=scene_from_rig, times_s=tuple(times_s))
 
     def metered(self, scene: Scene, *, device: str = "auto") -> Rig:
-        """Sets each camera's exposure time so that its average is middle grey. Raises what render raises."""
+        """Returns the rig with exposure times by which the average of each camera's picture is middle grey.
+
+        Raises what render raises.
+        """
         times = {name: camera.metered(scene, device=device).exposure_time_s for name, camera in self.cameras.items()}
         members = {
             name: replace(member, camera=member.camera.replace(exposure_time_s=times[name]))
@@ -178,13 +190,14 @@ class Rig:
     def shots(
         self, scene: Scene, settings: RenderSettings | None = None, **changes: Unpack[_SettingWords]
     ) -> dict[str, Shot]:
-        """One shot per camera, for example for rc.Job. Settings are those of rc.render.
+        """Returns one shot per camera, by name, for example for rc.Job. settings, changes: as for rc.render.
 
-        Each shot has its own seed: identical noise in two pictures would be matched like scene detail.
+        Each shot has its own seed, because a program that matches pictures would take identical noise for detail of the
+        scene. Raises InputError.
         """
-        wanted = settings_of(settings, changes)
+        rig_settings = settings_of(settings, changes)
         return {
-            name: Shot(scene, camera, wanted.with_(seed=(wanted.seed + number) % 2**32))
+            name: Shot(scene, camera, rig_settings.with_(seed=(rig_settings.seed + number) % 2**32))
             for number, (name, camera) in enumerate(self.cameras.items())
         }
 
@@ -196,7 +209,7 @@ class Rig:
         device: str = "auto",
         **changes: Unpack[_SettingWords],
     ) -> dict[str, Image]:
-        """Renders the pictures of all cameras, by their names, as rc.render does.
+        """Renders the pictures of all cameras, as rc.render does, and returns them by name.
 
         The scene is prepared once: its acceleration structure serves all cameras, and later pictures of the same scene.
         Raises what rc.render raises.
@@ -204,10 +217,11 @@ class Rig:
         return {name: shot.render(device=device) for name, shot in self.shots(scene, settings, **changes).items()}
 
     def expose(self, images: Mapping[str, Image], *, seed: int = 0) -> dict[str, RawImage]:
-        """Raw images of rendered pictures, for the cameras that have a sensor: Sensor.expose with their filters.
+        """Returns the raw images of rendered pictures by name, for the cameras that have a sensor.
 
-        A filter does not change the gain that the camera's ISO sets, so the ISO of the raw image is lower by
-        filter_factor. seed: of the noise. Each sensor has its own fixed-pattern noise. Raises InputError.
+        They are those of Sensor.expose, with the cameras' filters. A filter does not change the gain that the camera's
+        ISO sets, so the ISO of the raw image is the camera's times filter_factor. seed: of the noise. Each sensor has
+        its own fixed-pattern noise. Raises InputError.
         """
         raws = {}
         for number, (name, member) in enumerate(self.members.items()):
@@ -218,10 +232,12 @@ class Rig:
         return raws
 
     def relative_pose(self, of: str, seen_from: str) -> tuple[Array, Array]:
-        """(R, t): R @ point + t transforms points from the frame of `seen_from` to the frame of `of`.
+        """Returns (R, t): R @ point + t transforms points from the frame of `seen_from` to the frame of `of`.
 
-        relative_pose("right", "left") is cv2.stereoCalibrate's R and T: axes x right, y down, z forward, origin at the
-        centre of the entrance pupil, metres. Raises InputError.
+        R is (3, 3) and t is (3), in metres. Both frames have the axes x right, y down, z forward, and their origin at
+        the centre of the entrance pupil. relative_pose("right", "left") gives cv2.stereoCalibrate's R and T.
+
+        Raises InputError.
         """
         pose, from_pose = (self._member(name).camera.world_to_camera for name in (of, seen_from))
         return relative_pose(pose, from_pose)
@@ -232,12 +248,12 @@ class Rig:
         return self.members[name]
 
     def calibration(self, fits: Iterable[CameraModelFit] = ()) -> dict[str, Any]:
-        """Intrinsics and poses of all cameras, for json.dump (docs/rigs.md).
+        """Returns the intrinsics and poses of all cameras as values for json.dump (docs/rigs.md).
 
         fits: results of rc.fit_camera_model for rig.cameras. Raises InputError, also for a moving rig.
         """
         if self.times_s:
-            raise InputError("a rig that moves has no one pose; moved(matrix) stops it")
+            raise InputError("a moving rig has no single pose; moved(matrix) stops it")
         fits = list(fits)
         cameras = {}
         for name, camera in self.cameras.items():
@@ -256,8 +272,8 @@ class Rig:
     ) -> None:
         """Writes a COLMAP text model with rig and frames, for pictures that the rig takes at several poses.
 
-        poses: scene_from_rig by image name; each camera's images lie in a folder with the camera's name.
-        model: the camera model to fit to each camera. Raises InputError, ImageFileError.
+        poses: scene_from_rig by image name; each camera's images lie in a folder with the camera's name. model: the
+        camera model to fit to each camera. Raises InputError, ImageFileError.
         """
         save_colmap_of_rig(folder, {name: self.moved(pose).cameras for name, pose in poses.items()}, model)
 
@@ -284,28 +300,33 @@ class Rig:
 
 
 def _rigid(matrices: ArrayLike, times: int) -> Array:
+    """Returns matrices as an array, one for each time or a single one. Raises InputError unless they are rigid."""
     try:
         poses: Array = np.array(matrices, dtype=float)
     except (TypeError, ValueError):
         poses = np.zeros(0)
     if poses.shape != ((times, 4, 4) if times else (4, 4)) or not np.isfinite(poses).all():
-        wanted = f"{times} matrices, one for each of times_s," if times else "a (4, 4) matrix"
-        raise InputError(f"scene_from_rig must be {wanted} of finite numbers")
-    turns = np.clip(poses[..., :3, :3], -2, 2)  # products of larger elements, which no rotation has, might overflow
+        expected = f"{times} matrices, one for each of times_s," if times else "a (4, 4) matrix"
+        raise InputError(f"scene_from_rig must be {expected} of finite numbers")
+    rotations = np.clip(poses[..., :3, :3], -2, 2)  # products of larger elements, which no rotation has, might overflow
     # The tolerance admits rotations written with seven digits.
-    is_turn = np.allclose(turns @ np.swapaxes(turns, -1, -2), np.eye(3), atol=1e-6) and (np.linalg.det(turns) > 0).all()
-    if not is_turn or not np.allclose(poses[..., 3, :], (0, 0, 0, 1), rtol=0, atol=1e-12):
-        raise InputError("scene_from_rig must rotate and move alone: a rig is neither scaled nor mirrored")
+    is_orthogonal = np.allclose(rotations @ np.swapaxes(rotations, -1, -2), np.eye(3), atol=1e-6)
+    is_rotation = is_orthogonal and (np.linalg.det(rotations) > 0).all()
+    if not is_rotation or not np.allclose(poses[..., 3, :], (0, 0, 0, 1), rtol=0, atol=1e-12):
+        raise InputError("scene_from_rig must only rotate and move: a rig is neither scaled nor mirrored")
     return poses
 
 
 def _nested(poses: Array) -> Any:
-    """The array as tuples, which compare and hash."""
+    """Returns the array as nested tuples, which can be compared and hashed."""
     return tuple(map(_nested, poses)) if poses.ndim else float(poses)
 
 
 def _pose_of(camera: Camera) -> Array:
-    """(4, 4): from the frame of a camera (x right, y up, z backward, origin at the film centre) to the scene."""
+    """Returns the (4, 4) matrix from a camera's frame to the scene.
+
+    The frame has the axes x right, y up, z backward, and its origin at the film centre.
+    """
     pose = np.eye(4)
     backward = np.subtract(camera.position, camera.look_at)
     right = np.cross(camera.up, backward)
@@ -322,13 +343,15 @@ def _placed(camera: Camera, poses: Array, times_s: tuple[float, ...]) -> Camera:
     def at(
         pose: Array, position: Sequence[float], look_at: Sequence[float], up: Sequence[float]
     ) -> tuple[tuple[float, ...], ...]:
-        turn, shift = pose[:3, :3], pose[:3, 3]
-        return tuple(tuple(v.tolist()) for v in (turn @ position + shift, turn @ look_at + shift, turn @ up))
+        rotation, shift = pose[:3, :3], pose[:3, 3]
+        return tuple(
+            tuple(v.tolist()) for v in (rotation @ position + shift, rotation @ look_at + shift, rotation @ up)
+        )
 
-    stands = camera.position, camera.look_at, camera.up
+    in_rig = camera.position, camera.look_at, camera.up
     if times_s:
-        motion: Any = [(time_s, *at(pose, *stands)) for time_s, pose in zip(times_s, poses, strict=True)]
+        motion: Any = [(time_s, *at(pose, *in_rig)) for time_s, pose in zip(times_s, poses, strict=True)]
     else:
         motion = [(time_s, *at(poses[0], *key)) for time_s, *key in camera.motion]
-    position, look_at, up = at(poses[0], *stands)
+    position, look_at, up = at(poses[0], *in_rig)
     return camera.replace(position=position, look_at=look_at, up=up, motion=motion)

@@ -209,7 +209,7 @@ def test_blades_and_film_have_keys() -> None:
         (lambda: shot_of(Key(0, f_number=1.2)), "key 0 of the camera: f/1.2 is faster than lens"),
         (lambda: shot_of(Key(0, focus_m=0.02)), "key 0 of the camera: cannot focus at 0.02 m"),
         (lambda: shot_of(Key(0, focal_length_mm=50)), "key 0 of the camera: .* has no focal lengths between"),
-        (lambda: shot_of(Key(0, iso=100), iso_follows_s=0.5), "iso_follows_s and the iso of keys exclude each other"),
+        (lambda: shot_of(Key(0, iso=100), iso_follows_s=0.5), "iso_follows_s cannot be combined with the iso of keys"),
         (lambda: shot_of(iso_follows_s=-1), "iso_follows_s must be a number of seconds"),
     ],
 )

@@ -70,5 +70,5 @@ def test_a_moving_camera_is_where_its_rays_times_say() -> None:
 def test_wavelengths_that_are_no_range(wrong: tuple[float, float]) -> None:
     with pytest.raises(rc.InputError, match="two numbers between 300 and 2500"):
         rc.Camera(LENS, film=FILM).generate_rays(wavelengths_nm=wrong)
-    with pytest.raises(rc.InputError, match='needs the camera model "full"'):
+    with pytest.raises(rc.InputError, match='requires the camera model "full"'):
         rc.Camera(LENS, film=FILM, model="thin").generate_rays(wavelengths_nm=(400, 700))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 import realcam as rc
-from realcam.cli.command_words import Grammar, plain_number, spelled, understood
+from realcam.cli.command_words import Grammar, in_known_spelling, normalised, plain_number
 
 from ..programs import Command
 from .test_command_line import QUAD
@@ -98,7 +98,7 @@ def test_all_else_is_left_to_the_parser(text: str, kind: str) -> None:
 def test_words_of_a_command_line() -> None:
     words = "a.glb --focus 2m --f-number=f/4 --json -o 2m --f-number --json -- --focus 3m"
     plain = "a.glb --focus 2 --f-number=4 --json -o 2m --f-number --json -- --focus 3m"
-    assert understood(words.split(), RENDER) == plain.split()
+    assert normalised(words.split(), RENDER) == plain.split()
 
 
 def test_spelling() -> None:
@@ -113,7 +113,7 @@ def test_spelling() -> None:
         "optimise": "optimise",
         "lateral-colr": "lateral-colr",
     }.items():
-        assert spelled(word, known) == listed
+        assert in_known_spelling(word, known) == listed
 
 
 @pictures

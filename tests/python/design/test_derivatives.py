@@ -279,7 +279,7 @@ def test_a_function_of_rays_has_the_gradient_of_its_central_differences() -> Non
             lambda lens: rc.backpropagate_rays(
                 lens, np.zeros((2, 3)), np.ones((2, 3)), [rc.Variable.radius(0)], of_origins=np.zeros((1, 3))
             ),
-            r"must be arrays of shape \(N, 3\), as the rays are",
+            r"must be arrays of shape \(N, 3\), like origins_mm",
         ),
         (
             lambda lens: rc.backpropagate_rays(

@@ -332,7 +332,7 @@ def test_the_command_takes_options(tmp_path: Path, options: list[str]) -> None:
         (["--states", "all"], "expected one, rows or ghost"),
         (["--fields", "0,x"], '--fields: "x" is not a number'),
         (["--states", "ghost"], "names no nearest focus"),
-        (["--states", "rows", "--focus", "2"], "do not go with it"),
+        (["--states", "rows", "--focus", "2"], "cannot be combined with it"),
         (["--wavelengths", "5"], "between 100 and 20000 nm"),
     ],
 )

@@ -57,7 +57,7 @@ def test_all_lenses_with_their_figures(command: Command) -> None:
         ("--focal wide", '--focal-length: "wide" is not a number or two with a minus between, 35-70'),
         ("--focal 70-35", '--focal-length: "70-35": expected positive numbers, the smaller one first'),
         ("--f-number 0", "--f-number: "),
-        ("no-such-lens", "no lens is like this; realcam lens list shows all"),
+        ("no-such-lens", "no lens matches; realcam lens list shows all"),
         ("--lens-path nowhere", "--lens-path: nowhere is no folder"),
     ],
 )

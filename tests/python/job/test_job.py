@@ -456,7 +456,7 @@ def test_the_commands_make_work_tell_and_finish(
     words = ("make", "one.toml", "two.toml", "-o", "both.job", "--device", "cpu", "--tile", "32x16")
     code, output, errors = job(*words, "--sbatch", "both.sbatch", "--openjd", "both.json", "--tasks", "5")
     assert (code, errors) == (0, "")
-    assert output == "both.job: 2 pictures, units as the noise wants them\nwrote both.sbatch\nwrote both.json\n"
+    assert output == "both.job: 2 pictures, units as the noise requires them\nwrote both.sbatch\nwrote both.json\n"
     (tmp_path / "wall.obj").unlink()  # the job has all that it needs
     script = (tmp_path / "both.sbatch").read_text()
     assert "#SBATCH --array=1-5\n" in script

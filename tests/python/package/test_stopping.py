@@ -283,7 +283,7 @@ FORK = """
 @pytest.mark.parametrize("concurrent", [True, False])
 def test_a_forked_process_works_or_says_why_not(concurrent: bool) -> None:
     out, errors = child(FORK.format(concurrent=concurrent)).communicate(timeout=30)
-    expected = "this process was forked while another thread was at work" if concurrent else "rendered (20, 30, 3)"
+    expected = "this process was forked while another thread was running" if concurrent else "rendered (20, 30, 3)"
     assert out.splitlines()[0].startswith(expected), (out, errors)
     assert out.splitlines()[1] == "0"
 

@@ -123,7 +123,7 @@ def test_what_is_missing_is_told_in_one_line(monkeypatch: pytest.MonkeyPatch) ->
 @pytest.mark.parametrize("shape", [(4, 5, 1), (4, 5), (4, 4, 3), (0, 5, 3)])
 def test_layers_of_another_size_are_refused(shape: tuple[int, ...]) -> None:
     right, other = np.ones((4, 5, 3), np.float32), np.ones(shape, np.float32)
-    with pytest.raises(rc.InputError, match="of one H and W"):
+    with pytest.raises(rc.InputError, match="of the same shape"):
         opened("cpu").denoised(right, other, right, fast=True)
 
 

@@ -202,7 +202,7 @@ def test_films_that_cannot_be_are_refused(folder: Path, command: Command, words:
     assert done.stderr.startswith("realcam: error: ") and wanted in done.stderr
     assert done.stderr.count("\n") == 1
     assert not list(folder.glob("a*"))
-    with pytest.raises(rc.InputError, match="a film wants frames with numbers from 0 on"):
+    with pytest.raises(rc.InputError, match="frame numbers must be 0 or more"):
         rc.Shot.load("pan.toml", device="cpu").frames([-1])
 
 

@@ -301,7 +301,7 @@ def test_what_is_no_place_is_refused(place: object, says: str) -> None:
         (2, np.eye(4), "no instance 2; the scene has 2"),
         (-1, np.eye(4), "no instance -1"),
         ("eg", np.eye(4), 'no instance "eg"'),
-        (np.int64(1), [np.eye(4), np.eye(4)], "stays where it is has one transform"),
+        (np.int64(1), [np.eye(4), np.eye(4)], "must be a single matrix"),
     ],
 )
 def test_an_instance_that_cannot_be_moved_is_told(which: object, place: object, says: str) -> None:

@@ -131,7 +131,7 @@ def test_dark_current_grows_with_time_and_temperature() -> None:
         assert dark_mean(time_s, temperature_c) == pytest.approx(expected, abs=5 * error)
     silent = sensor.replace(dark_current_doubling_k=0)
     film = film_of(np.zeros((3, 3)), pitch_um=1, iso=iso)
-    with pytest.raises(rc.InputError, match="does not tell how its dark current changes with temperature"):
+    with pytest.raises(rc.InputError, match="does not specify how its dark current depends on temperature"):
         silent.expose(film, temperature_c=0)
 
 

@@ -168,9 +168,9 @@ def test_a_camera_stands_outside_of_all_bodies() -> None:
         rng = np.random.default_rng([1, number])
         seen = random_scene(recipe, rng)
         camera = random_camera(recipe, seen, rng)
-        sizes = 2 * seen.middles_m[:, 1]
+        sizes = 2 * seen.centres_m[:, 1]
         # A body is within the cube of its size, turned about the vertical.
-        across = np.linalg.norm((seen.middles_m - camera.position)[:, [0, 2]], axis=1)
+        across = np.linalg.norm((seen.centres_m - camera.position)[:, [0, 2]], axis=1)
         assert ((across > np.sqrt(0.5) * sizes) | (camera.position[1] > sizes)).all()
 
 

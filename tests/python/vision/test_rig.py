@@ -91,7 +91,7 @@ def test_a_rig_that_moves_gives_its_cameras_motions() -> None:
     keys = moving.cameras["right"].motion
     assert [key[0] for key in keys] == [0, 0.5]
     assert keys[1][1] == pytest.approx((1 + BASELINE_M / 2, 0, 0))
-    with pytest.raises(rc.InputError, match="no one pose"):
+    with pytest.raises(rc.InputError, match="no single pose"):
         moving.calibration()
 
 

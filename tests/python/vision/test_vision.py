@@ -183,7 +183,7 @@ def test_too_many_terms_are_warned_of_once(lens: str, enough: str | None) -> Non
         assert messages == []
         return
     (message,) = messages
-    assert message.startswith(f"{enough} predicts places between those that were fitted as well as opencv8")
+    assert message.startswith(f"{enough} predicts points between the fitted ones as well as opencv8")
     assert caught[0].filename == __file__
     simpler = rc.fit_camera_model(fit.camera, enough)
     assert simpler.held_out_rms_px() < fit.held_out_rms_px() + 0.01
@@ -216,7 +216,7 @@ def test_opencv_projects_what_the_fit_does() -> None:
             lambda: rc.fit_camera_model(camera_of("tessar-50mm"), "brown"),
             'unknown camera model "brown"; expected one of pin',
         ),
-        (lambda: rc.fit_camera_model(camera_of("fisheye-6mm-220deg"), "opencv5"), "sees 90 degrees to the side"),
+        (lambda: rc.fit_camera_model(camera_of("fisheye-6mm-220deg"), "opencv5"), "reaches 90 degrees off the axis"),
         (lambda: rc.fit_camera_model(camera_of("tessar-50mm"), distance_m=0), "distance_m must be a positive number"),
         (lambda: rc.fit_camera_model(camera_of("tessar-50mm"), distance_m=0.001), "lies inside the lens"),
         (lambda: rc.fit_camera_model(camera_of("tessar-50mm"), "f_theta").opencv(), "have no model f_theta"),
@@ -296,7 +296,7 @@ def test_colmap_refuses_what_it_cannot_hold(tmp_path: Path) -> None:
     camera = camera_of("tessar-50mm")
     with pytest.raises(rc.InputError, match="COLMAP has no camera model f_theta"):
         rc.save_colmap(tmp_path / "sparse", {"a.png": camera}, "f_theta")
-    with pytest.raises(rc.InputError, match="no names with spaces"):
+    with pytest.raises(rc.InputError, match="must not be empty or contain spaces"):
         rc.save_colmap(tmp_path / "sparse", {"a picture.png": camera})
     assert not (tmp_path / "sparse").exists()
 
