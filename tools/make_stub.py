@@ -266,7 +266,7 @@ def stub() -> str:
         for argument in settings.args
         if argument.kw_only
     ]
-    lines += ["class _SettingWords(TypedDict, total=False):", *indent_lines(keywords)]
+    lines += ["class _SettingsKwargs(TypedDict, total=False):", *indent_lines(keywords)]
     text = "\n".join([*lines, ""])
     for pattern, spelling in SPELLINGS:
         text = re.sub(pattern, spelling, text)

@@ -118,7 +118,7 @@ int fail(const std::string& message) {
 }
 
 /// Adds the commands to `app` in place, because CLI11's objects can be neither copied nor moved.
-void set_up(CLI::App& app, const FilmWriter* video_writer = nullptr) {
+void set_up(CLI::App& app, const VideoWriter* video_writer = nullptr) {
     app.name("realcam");
     app.description("Photographs 3D scenes through real lenses.");
     app.option_defaults()->disable_flag_override();
@@ -151,7 +151,7 @@ void collect_commands(const CLI::App& command, std::vector<std::string> words, s
 }
 
 /// Parses the arguments and runs the command. Returns the exit code; errors of the command are thrown.
-int run(int argc, char** argv, const FilmWriter* video_writer) {
+int run(int argc, char** argv, const VideoWriter* video_writer) {
     CLI::App app;
     set_up(app, video_writer);
     if (argc == 1) {
@@ -178,7 +178,7 @@ std::vector<ListedCommand> listed_commands() {
     return listed;
 }
 
-int run_command_line(int argc, char** argv, const FilmWriter* video_writer) {
+int run_command_line(int argc, char** argv, const VideoWriter* video_writer) {
     try {
         return run(argc, argv, video_writer);
     } catch (const Interrupted& interrupted) {

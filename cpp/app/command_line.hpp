@@ -4,7 +4,7 @@
 
 namespace realcam::app {
 
-class FilmWriter;
+class VideoWriter;
 
 /// Option or positional argument of a command, as its help text lists it.
 struct ListedOption {
@@ -24,6 +24,6 @@ std::vector<ListedCommand> listed_commands();
 
 /// Runs the program `realcam` with the arguments of main. Returns the exit code; errors have been printed on stderr.
 /// `video_writer`: null if this program writes no videos.
-int run_command_line(int argc, char** argv, const FilmWriter* video_writer = nullptr);
+int run_command_line(int argc, char** argv, const VideoWriter* video_writer = nullptr);
 
 }  // namespace realcam::app

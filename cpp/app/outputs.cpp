@@ -59,7 +59,7 @@ std::string settings_digest(const shot::ShotRequest& request, const Camera& came
          << request.meters_exposure_time() << ' ' << request.iso_follows_s.value_or(-1);
     for (std::size_t i = 0; i < kLayers.size(); ++i) text << ' ' << s.layers.has(static_cast<Layer>(i));
     if (s.noise)
-        text << ' ' << s.noise->noise << ' ' << static_cast<int>(s.noise->unit) << ' ' << s.noise->most_samples << ' '
+        text << ' ' << s.noise->noise << ' ' << static_cast<int>(s.noise->unit) << ' ' << s.noise->max_samples << ' '
              << s.noise->seconds;
     text << '\n' << further_settings;
     // The 64-bit FNV-1a hash: http://www.isthe.com/chongo/tech/comp/fnv
@@ -132,7 +132,7 @@ std::string frame_picture(const std::string& video, int frame) {
 
 }  // namespace
 
-OutputFiles::OutputFiles(const std::vector<std::string>& outputs, const FilmWriter* writer) : writer_(writer) {
+OutputFiles::OutputFiles(const std::vector<std::string>& outputs, const VideoWriter* writer) : writer_(writer) {
     std::partition_copy(outputs.begin(), outputs.end(), std::back_inserter(videos_), std::back_inserter(pictures_),
                         is_video);
 }

@@ -8,9 +8,9 @@
 namespace realcam::app {
 
 /// Encoder of videos from picture files. The Python package implements it with PyAV; the executable has none.
-class FilmWriter {
+class VideoWriter {
 public:
-    virtual ~FilmWriter() = default;
+    virtual ~VideoWriter() = default;
 
     /// Throws Error if the video file `video` could not be written. Called before the first frame is rendered.
     virtual void check(const std::string& video) const = 0;
@@ -27,7 +27,7 @@ public:
 class OutputFiles {
 public:
     /// `writer`: null if this program writes pictures only; the pointer is kept.
-    OutputFiles(const std::vector<std::string>& outputs, const FilmWriter* writer);
+    OutputFiles(const std::vector<std::string>& outputs, const VideoWriter* writer);
 
     /// Throws Error if an output cannot be written. `frames`: empty for a single picture.
     void check(const std::vector<int>& frames) const;
@@ -48,7 +48,7 @@ public:
 
 private:
     std::vector<std::string> pictures_, videos_;  ///< the outputs as specified: names of frames still hold their ####
-    const FilmWriter* writer_;
+    const VideoWriter* writer_;
 };
 
 /// True if an output is a video (see outputs.hpp), not a picture.

@@ -94,7 +94,7 @@ bool is_file(const std::string& path) {
 /// One run of `realcam render` or `realcam plan`.
 class Run {
 public:
-    Run(const RenderOptions& options, const FilmWriter* video_writer)
+    Run(const RenderOptions& options, const VideoWriter* video_writer)
         : options_(options), outputs_(options.outputs, video_writer) {}
 
     /// Renders the picture or frames and writes them. Throws Error, and Interrupted after a signal.
@@ -115,7 +115,7 @@ public:
         const auto session = make_session(options_.device, [this](const std::string& text) { warn(text); });
         shot::Shot shot = set_up_shot(request, std::move(camera));
         for (const std::string& file : frames.empty() ? options_.outputs : outputs_.all_files(frames))
-            image_io::check_no_input(file);
+            image_io::check_is_not_an_input(file);
         if (!frames.empty())
             settings_digest_ = settings_digest(request, shot.camera, std::to_string(options_.frames_per_second));
         const PictureTools tools{*session, denoiser ? &*denoiser : nullptr, written_layers};
@@ -170,7 +170,7 @@ private:
 
     /// True if pictures for screens are denoised when they miss the default noise goal.
     bool denoises_if_noisy(const shot::ShotRequest& request) const {
-        return request.sampling == shot::Sampling::unsaid && !request.denoises && !request.keeps_noise &&
+        return request.sampling == shot::Sampling::unspecified && !request.denoises && !request.keeps_noise &&
                !request.settings.layers.has_any(kHalfLayers) &&
                !std::all_of(options_.outputs.begin(), options_.outputs.end(), is_exr);
     }
@@ -205,9 +205,9 @@ private:
         if (!request.settings.needs_plan()) return "";
         const std::vector<Camera> cameras =
             frames.empty() ? std::vector{shot.camera} : cameras_to_plan(shot, request, frames);
-        ResolvedFilm plan = until_interrupted([&] {
+        ResolvedSettings plan = until_interrupted([&] {
             ProgressBar planning("planning ", !options_.is_quiet);
-            return resolve_film(session, shot.scene, cameras, request.settings, fast_pupil_tracer(), [&](double) {
+            return resolve_settings(session, shot.scene, cameras, request.settings, fast_pupil_tracer(), [&](double) {
                 planning.show_seconds();
                 return is_not_interrupted();
             });
@@ -259,7 +259,7 @@ private:
         }
         outputs_.create_frame_folders();
         const std::uint32_t seed = request.settings.seed;
-        std::optional<shot::FollowedIso> auto_iso;
+        std::optional<shot::AutoIso> auto_iso;
         if (request.iso_follows_s)
             auto_iso.emplace(tools.session, shot.scene, camera, request.keys, request.settings,
                              options_.frames_per_second, *request.iso_follows_s);
@@ -427,7 +427,7 @@ private:
 
 }  // namespace
 
-void add_render_command(CLI::App& app, const FilmWriter* video_writer) {
+void add_render_command(CLI::App& app, const VideoWriter* video_writer) {
     CLI::App* command = app.add_subcommand("render", "Photograph a scene through a lens.");
     const auto options = std::make_shared<RenderOptions>();
     add_render_options(*command, *options);

@@ -4,11 +4,11 @@
 
 namespace realcam::app {
 
-class FilmWriter;
+class VideoWriter;
 
 /// Adds `render`, which throws Interrupted if a signal stopped it. `video_writer`: null if this program writes no
 /// videos; the pointer is kept.
-void add_render_command(CLI::App& app, const FilmWriter* video_writer);
+void add_render_command(CLI::App& app, const VideoWriter* video_writer);
 /// Adds `plan`, which plans a shot without rendering it.
 void add_plan_command(CLI::App& app);
 

@@ -62,7 +62,7 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
         for (const std::string& name : effects) names += (names.empty() ? "" : ", ") + name;
         const auto light = settings.spectral_light();
         line("effects", names + (light ? ", illuminant " + light->text() : ""));
-        if (any_is(settings.effects, &EffectInfo::needs_coatings)) line("coatings", coating_summary(lens));
+        if (any_active_has(settings.effects, &EffectInfo::needs_coatings)) line("coatings", coating_summary(lens));
     }
     if (verbose) {
         const double busy = stats.lens_seconds + stats.scene_seconds + stats.other_seconds;
@@ -167,7 +167,7 @@ std::string SamplingNotice::goal_text() const {
         "samples are taken until the noise is " +
         (is_in_codes ? counted(goal_.noise, "code") + " of 255" : number_text(100 * goal_.noise) + "% of the light");
     if (std::isfinite(goal_.seconds)) text += ", for " + number_text(goal_.seconds) + " s at most";
-    if (sampling_ == shot::Sampling::unsaid) text += "; --noise-codes, --seconds or --spp change this";
+    if (sampling_ == shot::Sampling::unspecified) text += "; --noise-codes, --seconds or --spp change this";
     return text;
 }
 

@@ -15,7 +15,7 @@ using namespace py::literals;
 namespace {
 
 /// Film writer that calls realcam.video.
-class FilmWriterInPython : public app::FilmWriter {
+class VideoWriterInPython : public app::VideoWriter {
 public:
     void check(const std::string& film) const override {
         const py::gil_scoped_acquire locked;
@@ -49,7 +49,7 @@ int run_command(const Typed<"list[bytes]", py::list>& words) {
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);
-    const FilmWriterInPython film_writer;
+    const VideoWriterInPython film_writer;
     const Unlocked unlocked;
     return app::run_command_line(static_cast<int>(arguments.size()), pointers.data(), &film_writer);
 }

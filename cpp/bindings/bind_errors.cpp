@@ -80,7 +80,7 @@ void bind_errors(py::module_& m) {
     m.def("_record_inputs", &record_inputs, "is_on"_a,
           "Internal. Starts (True) or ends (False) recording which files are read.");
     m.def(
-        "_check_no_input", [](const py::bytes& output) { image_io::check_no_input(output); }, "output"_a,
+        "_check_no_input", [](const py::bytes& output) { image_io::check_is_not_an_input(output); }, "output"_a,
         "Internal. Raises an error if the output file is one of the recorded input files.");
     m.def(
         "one_line", [](const std::string& message) { return text_from(io::one_line(message)); }, "message"_a,

@@ -97,8 +97,8 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
     if (traces_lights() && uses_rotational_code(camera.lens))
         pupil_entries_ = last && last->pupil_entries_ && last->pupil_ == pupil_
                              ? last->pupil_entries_
-                             : std::make_shared<const PupilEntries>(pupil_->view(), path_.view(), film_radius(),
-                                                                    camera.lens.film_distance, tracer);
+                             : std::make_shared<const PupilEntryBounds>(pupil_->view(), path_.view(), film_radius(),
+                                                                        camera.lens.film_distance, tracer);
     if (camera.model == CameraModel::full_lens_double) {
         path_in_double_.emplace(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm,
                                 film_path_ends(camera.lens, LightDirection::to_scene));
@@ -112,14 +112,14 @@ CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
     const LensSystem on_axis = centred(lens);
     const FirstOrder data = first_order(on_axis, lens.wavelength_nm);
     CameraView view{};
-    static_cast<CameraPlacement&>(view) =
+    static_cast<CameraFrame&>(view) =
         placement(scene_from_camera(pose_at(camera_, camera_.exposure().begin_s)), origin_m);
     view.model = camera_.model;
     view.width = camera_.film.width;
     view.height = camera_.film.height;
     view.film_half_width = static_cast<float>(0.5 * camera_.film.width_mm);
     view.film_half_height = static_cast<float>(0.5 * camera_.film.height_mm);
-    view.film_middle = {static_cast<float>(-camera_.film.shift_mm.x), static_cast<float>(-camera_.film.shift_mm.y)};
+    view.film_centre = {static_cast<float>(-camera_.film.shift_mm.x), static_cast<float>(-camera_.film.shift_mm.y)};
     view.film_distance = static_cast<float>(lens.film_distance);
     view.film_curvature = static_cast<float>(1 / lens.film_radius_of_curvature);
     view.front_vertex_m = static_cast<float>(0.001 * camera_film_position(lens));
@@ -206,7 +206,7 @@ void CameraSetup::set_map(const PupilTracer& tracer, const CameraSetup* last) {
     map_ = std::make_shared<const LensMap>(lens, film_radius(), image, data.entrance_pupil_position, tracer);
 }
 
-CameraPlacement CameraSetup::placement(const Affine<double>& scene_from_camera, Vec3d origin_m) {
+CameraFrame CameraSetup::placement(const Affine<double>& scene_from_camera, Vec3d origin_m) {
     return {static_cast<Vec3f>(scene_from_camera.origin - origin_m), static_cast<Vec3f>(scene_from_camera.x),
             static_cast<Vec3f>(scene_from_camera.y), static_cast<Vec3f>(scene_from_camera.z)};
 }

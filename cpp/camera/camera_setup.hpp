@@ -53,7 +53,7 @@ public:
     double widest_angle() const;
     /// Entrance-pupil bounds of a camera that traces lights through a rotationally symmetric lens; null for other
     /// cameras.
-    const PupilEntries* pupil_entries() const { return pupil_entries_.get(); }
+    const PupilEntryBounds* pupil_entries() const { return pupil_entries_.get(); }
 
 private:
     /// Validates the camera before any member is built: a camera without a lens has no first surface.
@@ -71,7 +71,7 @@ private:
     void set_map(const PupilTracer& tracer, const CameraSetup* last);
 
     /// Pose in render space.
-    static CameraPlacement placement(const Affine<double>& scene_from_camera, Vec3d origin_m);
+    static CameraFrame placement(const Affine<double>& scene_from_camera, Vec3d origin_m);
 
     /// Sets the view's keyframes and row times; leaves the times 0 if nothing moves.
     void set_times(CameraView& view, bool scene_moves) const;
@@ -87,10 +87,10 @@ private:
     std::optional<LensPath<double>> path_in_double_;
     LensView<double> view_in_double_{};
     std::optional<LensPolynomial> polynomial_;
-    std::vector<CameraPlacement> keys_;  ///< at uniformly spaced times of the exposure; positions relative to the first
+    std::vector<CameraFrame> keys_;  ///< at uniformly spaced times of the exposure; positions relative to the first
     std::shared_ptr<const Pupil> pupil_;  ///< centred, rotationally symmetric lenses
     std::shared_ptr<const PupilGrid> pupil_grid_;  ///< all other lenses
-    std::shared_ptr<const PupilEntries> pupil_entries_;
+    std::shared_ptr<const PupilEntryBounds> pupil_entries_;
     float axis_irradiance_ = 0;  ///< ideal models only
     std::shared_ptr<const LensMap> map_;  ///< model mapped_lens only
 };

@@ -58,7 +58,7 @@ struct RayRequest {
 };
 
 /// Generates N rays of the range, from its `first` on; fewer at the end of the range. `lens_kind`: LensKind::any if
-/// has_any_lens(camera), else rotational.
+/// needs_general_lens_code(camera), else rotational.
 template <LensKind lens_kind, int N>
 REALCAM_HD inline void generate_rays_of(const RayRequest& request, std::int64_t first) {
     SampleBlock<N> block;

@@ -9,8 +9,8 @@
 
 namespace realcam {
 
-void name_cuda_plugin(const std::string&) {}
-std::string why_no_gpu_by_plugin() {
+void set_cuda_plugin_path(const std::string&) {}
+std::string plugin_failure() {
     return "";
 }
 
@@ -28,7 +28,7 @@ struct Plugin {
     std::string failure;    ///< message of the DeviceError, if `backend` is null
 };
 
-/// Path that name_cuda_plugin has set.
+/// Path that set_cuda_plugin_path has set.
 std::string& named_path() {
     static std::string path;
     return path;
@@ -64,10 +64,10 @@ const CudaBackend& backend() {
 
 }  // namespace
 
-void name_cuda_plugin(const std::string& path) {
+void set_cuda_plugin_path(const std::string& path) {
     named_path() = path;
 }
-std::string why_no_gpu_by_plugin() {
+std::string plugin_failure() {
     return plugin().is_named ? why_no_cuda_device() : "";
 }
 

@@ -11,10 +11,10 @@ const CudaBackend& load_cuda_plugin(const std::string& path);
 
 /// Sets the path of the plug-in, for a build without the CUDA backend; empty: no plug-in. Must be called before the
 /// plug-in is first used. The environment variable REALCAM_CUDA_PLUGIN takes precedence.
-void name_cuda_plugin(const std::string& path);
+void set_cuda_plugin_path(const std::string& path);
 
 /// Returns a message that says why the plug-in provides no GPU. Empty if it provides one, if no path is set, and in a
 /// build with the CUDA backend.
-std::string why_no_gpu_by_plugin();
+std::string plugin_failure();
 
 }  // namespace realcam

@@ -68,7 +68,7 @@ std::unique_ptr<Session> make_best_session(const DeviceNotice& notice) {
     std::string why_not;
     try {
         if (!cuda_devices().empty()) return make_gpu_session({0});
-        why_not = why_no_gpu_by_plugin();
+        why_not = plugin_failure();
     } catch (const UnsupportedGpu& error) {
         why_not = error.what();
     }

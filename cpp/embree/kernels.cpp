@@ -295,16 +295,18 @@ void take_splats_with(realcam_ghosts* job) {
     switch (static_cast<const GhostView*>(job->ghost_view)->light) {
         case GhostLight::of_lights:
         case GhostLight::starbursts:
-            if (has_any_lens(camera)) return splat_ghosts_with<LensKind::any, SceneKind::any, has_wavelengths>(job);
+            if (needs_general_lens_code(camera))
+                return splat_ghosts_with<LensKind::any, SceneKind::any, has_wavelengths>(job);
             return is_plain ? splat_ghosts_with<round, SceneKind::plain, has_wavelengths>(job)
                             : splat_ghosts_with<round, SceneKind::any, has_wavelengths>(job);
         case GhostLight::direct:
-            if (has_any_lens(camera)) return trace_lights_with<LensKind::any, SceneKind::any, has_wavelengths>(job);
+            if (needs_general_lens_code(camera))
+                return trace_lights_with<LensKind::any, SceneKind::any, has_wavelengths>(job);
             return is_plain ? trace_lights_with<round, SceneKind::plain, has_wavelengths>(job)
                             : trace_lights_with<round, SceneKind::any, has_wavelengths>(job);
         case GhostLight::of_objects:
-            return has_any_lens(camera) ? gather_ghosts_with<LensKind::any, has_wavelengths>(job)
-                                        : gather_ghosts_with<round, has_wavelengths>(job);
+            return needs_general_lens_code(camera) ? gather_ghosts_with<LensKind::any, has_wavelengths>(job)
+                                                   : gather_ghosts_with<round, has_wavelengths>(job);
     }
 }
 
@@ -318,7 +320,7 @@ void take_splats(realcam_ghosts* job) {
 void generate_all(const void* request) {
     const RayRequest rays = *static_cast<const RayRequest*>(request);
     for (std::int64_t first = 0; first < rays.count(); first += kLanes) {
-        if (has_any_lens(rays.camera))
+        if (needs_general_lens_code(rays.camera))
             generate_rays_of<LensKind::any, kLanes>(rays, first);
         else
             generate_rays_of<LensKind::rotational, kLanes>(rays, first);
@@ -329,7 +331,7 @@ template <class T>
 void trace_all(const void* request) {
     constexpr int kBlock = 64;
     const TraceRequest<T> rays = *static_cast<const TraceRequest<T>*>(request);
-    for (std::int64_t first = 0; first < rays.count; first += kBlock) trace_rays_of<kBlock>(rays, first);
+    for (std::int64_t first = 0; first < rays.count; first += kBlock) trace_ray_block<kBlock>(rays, first);
 }
 
 void expose_sensor(const void* request) {

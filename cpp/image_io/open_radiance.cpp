@@ -136,8 +136,8 @@ private:
     static std::array<double, N> numbers(const std::string& name, std::string_view text) {
         std::array<double, N> out{};
         for (double& number : out) {
-            std::string_view word = io::take_word(text);
-            const std::optional<double> value = io::take_number(word);
+            std::string_view word = io::consume_word(text);
+            const std::optional<double> value = io::consume_number(word);
             if (!value || !word.empty())
                 throw Error("has a line " + name + " without its " +
                             (N == 1 ? "number" : std::to_string(N) + " numbers"));
@@ -166,9 +166,9 @@ private:
         std::string_view rest = line;
         bool has_x = false, has_y = false;
         for (const bool is_first : {true, false}) {
-            const std::string_view axis = io::take_word(rest);
-            std::string_view number = io::take_word(rest);
-            const std::optional<std::int64_t> size = io::take_integer(number);
+            const std::string_view axis = io::consume_word(rest);
+            std::string_view number = io::consume_word(rest);
+            const std::optional<std::int64_t> size = io::consume_integer(number);
             const bool is_axis = axis == "-Y" || axis == "+Y" || axis == "-X" || axis == "+X";
             if (!is_axis || !size || !number.empty() || *size < 1 || *size > kMaxSize)
                 throw Error(std::string(kBroken) + " (expected a line of its size such as \"-Y 512 +X 1024\")");

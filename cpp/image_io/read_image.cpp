@@ -89,7 +89,7 @@ std::vector<float> decode_floats(OpenPicture& picture, const KeepGoing& keep_goi
 io::DecodedImage decode(OpenPicture& picture, const KeepGoing& keep_going) {
     // Bytes per pixel: the 8-bit values of a Texture exist beside the floats for a while.
     constexpr std::size_t code_bytes = 4, float_bytes = 4 * sizeof(float) + code_bytes;
-    check_size(picture, io::kMostTexturePixels, picture.is_wide ? float_bytes : code_bytes);
+    check_size(picture, io::kMaxTexturePixels, picture.is_wide ? float_bytes : code_bytes);
     if (!picture.is_wide) return {picture.width, picture.height, decode_codes(picture, keep_going)};
     return {picture.width, picture.height, decode_floats(picture, keep_going), picture.is_linear,
             picture.channels < 3 ? std::nullopt : picture.rec709};
@@ -212,7 +212,7 @@ std::optional<std::string> entry_of_complete_picture(const std::string& path, co
                                         [&](const auto& candidate) { return candidate.first == name; });
         if (entry == picture->entries.end() || !has_last_png_chunk(path)) return std::nullopt;
         const bool is_exposure = picture->is_linear;
-        check_size(*picture, io::kMostTexturePixels, is_exposure ? 3 * sizeof(float) : 4);
+        check_size(*picture, io::kMaxTexturePixels, is_exposure ? 3 * sizeof(float) : 4);
         if (is_exposure) {
             std::vector<float> pixels(3 * picture->pixel_count());
             picture->read(std::min(picture->channels, 3), 3, pixels.data(), keep_going);
@@ -232,7 +232,7 @@ FilmFile read_film(const std::string& path, const KeepGoing& keep_going) {
         const auto picture = open_picture(path, {});
         if (!picture->is_linear || picture->channels < 3)
             throw Error("has no exposure; expected an .exr that realcam has written");
-        check_size(*picture, io::kMostTexturePixels, 3 * sizeof(float));
+        check_size(*picture, io::kMaxTexturePixels, 3 * sizeof(float));
         for (const auto& [name, value] : picture->entries)
             if (!io::is_utf8(name) || !io::is_utf8(value))
                 throw Error("its metadata " + io::in_quotes(name) +

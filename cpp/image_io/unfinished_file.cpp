@@ -82,7 +82,7 @@ void UnfinishedFile::remember_failure(int error) {
     if (failure_ == 0) failure_ = error != 0 ? error : EIO;
 }
 
-void check_no_input(const std::string& output) {
+void check_is_not_an_input(const std::string& output) {
     std::error_code error;
     if (!fs::exists(output, error)) return;
     for (const std::string& input : io::recorded_inputs())
@@ -100,7 +100,7 @@ void UnfinishedFile::check_target() const {
     if (S_ISDIR(status.st_mode)) throw ImageFileError(path_ + ": is a folder; expected the name of a file");
     if (!S_ISREG(status.st_mode)) throw ImageFileError(path_ + ": is a pipe or a device; expected the name of a file");
     if (access(target_.c_str(), W_OK) != 0) fail(errno);
-    check_no_input(path_);
+    check_is_not_an_input(path_);
 }
 
 void UnfinishedFile::fail(int error) const {

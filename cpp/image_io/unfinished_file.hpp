@@ -38,6 +38,6 @@ private:
 };
 
 /// Throws InputError if an output is the same file as an input that was recorded (io::InputRecording).
-void check_no_input(const std::string& output);
+void check_is_not_an_input(const std::string& output);
 
 }  // namespace realcam::image_io

@@ -108,7 +108,7 @@ Assembly assemble(const FileScene& file, const SceneFileOptions& options, const 
     append(static_geometry.warnings, std::move(materials.warnings));
 
     SceneObjects objects(file, options.scale, options.objects, checkpoint);
-    const LeavesOut part_left_out = [&](std::uint32_t node, const Affine<double>& transform) {
+    const LeftOutFunction part_left_out = [&](std::uint32_t node, const Affine<double>& transform) {
         return objects.left_out(node, transform);
     };
     const ScenePart whole_scene{file,         options.scale, 0, static_cast<std::uint32_t>(file.nodes.size()),

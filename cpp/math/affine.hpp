@@ -88,7 +88,7 @@ struct Affine {
 
 /// Returns the rotation about the fixed axes x, then y, then z, by angles in degrees, counter-clockwise when the axis
 /// points to the viewer.
-inline Affine<double> turn_of(Vec3d degrees) {
+inline Affine<double> euler_rotation(Vec3d degrees) {
     // Rotation that takes axis a towards axis b.
     const auto rotation = [](double angle_deg, Vec3d Affine<double>::* a, Vec3d Affine<double>::* b) {
         const double angle = angle_deg * (std::numbers::pi / 180);

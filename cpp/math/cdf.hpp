@@ -61,7 +61,7 @@ struct CdfChoices {
 REALCAM_INLINE CdfChoice cdf_choice(int index, float below, float above, float u) {
     const float probability = above - below;
     // Half a step of 2^-24 is added to u, because `fresh` would otherwise always be 0 for an entry of one step.
-    return {index, probability, left_over(u - below + 0x1p-25f, probability)};
+    return {index, probability, remapped_random(u - below + 0x1p-25f, probability)};
 }
 
 /// Draws an index from a table by a random number u in [0, 1).

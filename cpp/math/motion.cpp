@@ -18,14 +18,14 @@ std::vector<double> Motion::times_within(const TimeInterval& interval) const {
             std::lower_bound(times_s.begin(), times_s.end(), std::max(interval.begin_s, interval.end_s))};
 }
 
-std::vector<double> sorted_once(std::vector<double> times) {
+std::vector<double> sorted_unique(std::vector<double> times) {
     std::sort(times.begin(), times.end());
     times.erase(std::unique(times.begin(), times.end()), times.end());
     return times;
 }
 
 std::string key_time_error(double time_s, const double* previous) {
-    if (!(std::fabs(time_s) <= kMostSeconds)) return "a time must lie within 1e9 s";
+    if (!(std::fabs(time_s) <= kMaxTime_s)) return "a time must lie within 1e9 s";
     return previous && !(*previous < time_s) ? "the times must rise" : "";
 }
 

@@ -13,7 +13,7 @@
 namespace REALCAM_NAMESPACE {
 
 /// Largest accepted magnitude of a time, s: up to here a double resolves a tenth of a microsecond.
-inline constexpr double kMostSeconds = 1e9;
+inline constexpr double kMaxTime_s = 1e9;
 
 /// Time interval, in seconds of the scene's clock.
 struct TimeInterval {
@@ -40,7 +40,7 @@ struct Motion {
 };
 
 /// Returns the times in increasing order, without duplicates.
-std::vector<double> sorted_once(std::vector<double> times);
+std::vector<double> sorted_unique(std::vector<double> times);
 
 /// Returns the reason why the time of a key is invalid, or an empty string if it is valid. `previous`: time of the
 /// previous key; null for the first key.

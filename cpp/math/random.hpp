@@ -49,7 +49,7 @@ REALCAM_INLINE float below_one(float u) {
 
 /// Remaps a random number that has been used for a choice: u, which must be less than the probability of the outcome,
 /// is scaled to a new random number in [0, 1), independent of the choice.
-REALCAM_INLINE float left_over(float u, float probability) {
+REALCAM_INLINE float remapped_random(float u, float probability) {
     return below_one(u / probability);
 }
 

@@ -206,8 +206,8 @@ inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, c
     for (const double field : {0.0, 0.25, 0.5, 0.7, 0.85, 0.97}) {
         // Towards the corner farthest from the axis.
         const Vec2f film = {
-            full.film_middle.x + std::copysign(static_cast<float>(field) * full.film_half_width, full.film_middle.x),
-            full.film_middle.y + std::copysign(static_cast<float>(field) * full.film_half_height, full.film_middle.y)};
+            full.film_centre.x + std::copysign(static_cast<float>(field) * full.film_half_width, full.film_centre.x),
+            full.film_centre.y + std::copysign(static_cast<float>(field) * full.film_half_height, full.film_centre.y)};
         const SampledBundle traced = traced_bundle(full, full.lens, film, tracer);
         const SampledBundle pinhole = ideal_bundle([&](Vec2f u) { return thin_lens_ray(ideal, film, u, 0.0f); });
         const SampledBundle thin =

@@ -110,9 +110,9 @@ public:
     /// the whole bundle.
     std::optional<Spot> spot_of(double slope) const {
         double low = -kInfinity, high = kInfinity;
-        for (const GhostPath::Meeting& meeting : path_.meetings) {
-            const double middle = -meeting.of_slope * slope / meeting.of_height;
-            const double radius = std::fabs(rim(meeting.surface) / meeting.of_height);
+        for (const GhostPath::SurfaceHeights& heights : path_.surface_heights) {
+            const double middle = -heights.of_slope * slope / heights.of_height;
+            const double radius = std::fabs(rim(heights.surface) / heights.of_height);
             low = std::max(low, middle - radius);
             high = std::min(high, middle + radius);
         }
@@ -133,9 +133,9 @@ public:
         const double height = film_height_per_slope_, slope = -film_height_per_height_;
         // Largest factor by which this ray can be scaled so that it passes all rims.
         double largest_scale = kInfinity;
-        for (const GhostPath::Meeting& meeting : path_.meetings)
+        for (const GhostPath::SurfaceHeights& heights : path_.surface_heights)
             largest_scale = std::min(
-                largest_scale, rim(meeting.surface) / std::fabs(meeting.of_height * height + meeting.of_slope * slope));
+                largest_scale, rim(heights.surface) / std::fabs(heights.of_height * height + heights.of_slope * slope));
         const double tangent = largest_scale * std::fabs(path_.of_height.slope * height + path_.of_slope.slope * slope);
         return {tangent / hypotenuse(tangent, 1.0), largest_scale * std::fabs(slope)};
     }
@@ -161,8 +161,8 @@ inline constexpr std::size_t kColours = std::size(kColours_nm);
 
 /// Axial transmittances at each of the colours and, last, at the lens's own wavelength, which stands for all colours
 /// without dispersion.
-inline std::vector<AxialShares> axial_transmittances(const LensSystem& lens) {
-    std::vector<AxialShares> transmittances;
+inline std::vector<AxialTransmittance> axial_transmittances(const LensSystem& lens) {
+    std::vector<AxialTransmittance> transmittances;
     for (const double wavelength_nm : kColours_nm) transmittances.emplace_back(lens, wavelength_nm);
     transmittances.emplace_back(lens, lens.wavelength_nm);
     return transmittances;
@@ -181,13 +181,13 @@ inline LightChange coating_codes(const Camera& camera, const SceneFacts& facts) 
     using namespace light_effects_detail;
     const double value = std::min(brightest_value(facts), 1.0);
     const auto crossings = crossings_of(camera.lens);
-    const std::vector<AxialShares> transmittances = axial_transmittances(camera.lens);
-    const auto codes_lost = [&](const AxialShares& transmittance) {
+    const std::vector<AxialTransmittance> transmittances = axial_transmittances(camera.lens);
+    const auto codes_lost = [&](const AxialTransmittance& transmittance) {
         return code_of(value) - code_of(value * transmittance(crossings));
     };
     const double lost_at_one_wavelength = codes_lost(transmittances.back());
     LightChange change;
-    for (const AxialShares& transmittance : transmittances) {
+    for (const AxialTransmittance& transmittance : transmittances) {
         change.codes = std::max(change.codes, codes_lost(transmittance));
         change.colour_codes =
             std::max(change.colour_codes, std::fabs(codes_lost(transmittance) - lost_at_one_wavelength));
@@ -257,7 +257,7 @@ inline GhostChange ghost_codes(const Camera& camera, const SceneFacts& facts) {
     const double sine_of_lens = std::min(0.5 * data.entrance_pupil_diameter / f, 1.0);
     const double pixel_mm = camera.film.width_mm / camera.film.width;
     const std::vector<VisibleLight> lights = brightest_in_front(facts);
-    const std::vector<AxialShares> transmittances = axial_transmittances(lens);
+    const std::vector<AxialTransmittance> transmittances = axial_transmittances(lens);
     // Ghost of one pair for one light, at each of the colours and, last, at the lens's own wavelength.
     struct Discs {
         GhostPair pair;

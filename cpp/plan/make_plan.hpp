@@ -41,7 +41,7 @@ inline Plan make_plan(Session& session, const Assembly& scene, const Camera& cam
 }
 
 /// Settings of a picture, or of all frames of a video, after planning.
-struct ResolvedFilm {
+struct ResolvedSettings {
     CameraModel model = CameraModel::full_lens;
     RenderSettings settings;
     std::vector<Plan> plans;  ///< one for each frame that was planned
@@ -53,10 +53,10 @@ struct ResolvedFilm {
 /// switches on and off within a video would be visible, unless the lens of another frame cannot show it. The camera
 /// model is the planned one, or that of the first camera if the plans differ. Frames that see nothing are ignored.
 /// `requested`: settings as given by the user. Throws the errors of make_plan, except NothingToPlan.
-inline ResolvedFilm resolve_film(Session& session, const Assembly& scene, const std::vector<Camera>& cameras,
-                                 const RenderSettings& requested, const PupilTracer& tracer,
-                                 const Progress& progress = {}) {
-    ResolvedFilm film{cameras.front().model, requested, {}, "", ""};
+inline ResolvedSettings resolve_settings(Session& session, const Assembly& scene, const std::vector<Camera>& cameras,
+                                         const RenderSettings& requested, const PupilTracer& tracer,
+                                         const Progress& progress = {}) {
+    ResolvedSettings film{cameras.front().model, requested, {}, "", ""};
     if (!requested.needs_plan()) return film;
     for (const Camera& camera : cameras) {
         try {
@@ -86,7 +86,7 @@ inline ResolvedFilm resolve_film(Session& session, const Assembly& scene, const 
     }
     for (const Camera& camera : cameras)
         for (const EffectInfo& effect : kEffects)
-            if (requested.effects.is_automatic && effect.needs_round_lens && !has_radial_pupil(camera.lens) &&
+            if (requested.effects.is_automatic && effect.needs_rotational_lens && !has_radial_pupil(camera.lens) &&
                 !(requested.effects.*effect.member))
                 effects.*effect.member = false;
     if (!effects.have_wavelengths()) film.settings.remove_spectra();

@@ -81,15 +81,15 @@ inline void plan_bounces(Session& session, const Assembly& scene, Camera camera,
     settings.remove_spectra();
     settings.layers = {};
     const auto with = [&](int bounces) { return small_picture(session, scene, camera, settings, bounces, progress); };
-    const std::vector<double> all = with(kMostBounces);
+    const std::vector<double> all = with(kMaxBounces);
     const double indirect = largest_difference(with(0), all);
     double missing = indirect, missing_with_fewer = indirect;
     plan.max_bounces = 0;
-    for (const int bounces : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, kMostBounces}) {
+    for (const int bounces : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, kMaxBounces}) {
         if (missing < kMargin * threshold) break;
         missing_with_fewer = missing;
         plan.max_bounces = bounces;
-        missing = bounces == kMostBounces ? 0 : largest_difference(with(bounces), all);
+        missing = bounces == kMaxBounces ? 0 : largest_difference(with(bounces), all);
     }
     const auto codes = [](double size) { return counted(size, "code", 2); };
     plan.decisions.push_back(

@@ -65,7 +65,7 @@ private:
     /// Returns why the planner must not switch the effect on: because the lens cannot show it or, if it can, because of
     /// `doubt`, which may be empty.
     std::string objection_to(const EffectInfo& effect, const std::string& doubt) const {
-        return effect.needs_round_lens && !is_rotational_
+        return effect.needs_rotational_lens && !is_rotational_
                    ? "but only a centred, rotationally symmetric lens can show it"
                    : doubt;
     }
@@ -159,7 +159,7 @@ private:
         const double light_codes = std::max({coatings_codes, ghost_colour_codes_, filter_codes});
         if (glass_px / settings_.thresholds.pixels < light_codes / settings_.thresholds.codes)
             decide("dispersion", light_codes, SizeUnit::codes,
-                   (filter_codes == light_codes             ? "the filter's colour changes white by "
+                   (filter_codes == light_codes            ? "the filter's colour changes white by "
                     : coatings_codes > ghost_colour_codes_ ? "the losses at the coatings differ between colours by "
                                                            : "ghosts differ between colours by ") +
                        codes(light_codes));
@@ -190,7 +190,7 @@ private:
         CameraModel model = CameraModel::full_lens;
         if (!may_choose_model_)
             model = camera_.model;
-        else if (is_rotational_ && !any_is(plan_.effects, &EffectInfo::needs_full_lens))
+        else if (is_rotational_ && !any_active_has(plan_.effects, &EffectInfo::needs_full_lens))
             model = errors_.pinhole.is_within(thresholds)  ? CameraModel::pinhole
                     : errors_.thin.is_within(thresholds)   ? CameraModel::thin_lens
                     : errors_.mapped.is_within(thresholds) ? CameraModel::mapped_lens

@@ -95,7 +95,7 @@ void validate(const Assembly& assembly) {
     validate_transforms(assembly);
 }
 
-Assembly standing_at(Assembly assembly, double time_s) {
+Assembly frozen_at(Assembly assembly, double time_s) {
     for (Instance& instance : assembly.instances) {
         instance.scene_from_object = instance.transform_at(time_s);
         instance.motion = nullptr;
@@ -125,7 +125,7 @@ std::vector<double> all_times(std::initializer_list<const Motion*> motions) {
     std::vector<double> times;
     for (const Motion* motion : motions)
         if (motion) times.insert(times.end(), motion->times_s.begin(), motion->times_s.end());
-    return sorted_once(std::move(times));
+    return sorted_unique(std::move(times));
 }
 
 void move(Assembly& assembly, std::size_t instance, const AnimatedTransform& transform) {
@@ -134,7 +134,7 @@ void move(Assembly& assembly, std::size_t instance, const AnimatedTransform& tra
     moves[instance] = true;
     for (std::size_t i = instance + 1; i < assembly.instances.size(); ++i) {
         Instance& part = assembly.instances[i];
-        if (part.part_of == Instance::kNoWhole || !moves[static_cast<std::size_t>(part.part_of)]) continue;
+        if (part.part_of == Instance::kNoParentInstance || !moves[static_cast<std::size_t>(part.part_of)]) continue;
         moves[i] = true;
         const auto relative_at = [&](double time) {
             return parent_from_part(parent.transform_at(time), part.transform_at(time));
@@ -172,7 +172,7 @@ void add(Assembly& assembly, const Assembly& object, const AnimatedTransform& tr
          DistinctNames& names) {
     const std::vector<Instance> parts = object.instances;  // a copy, because the object may be the assembly itself
     const std::string unique_name = names.take(name);
-    std::ptrdiff_t parent = Instance::kNoWhole;
+    std::ptrdiff_t parent = Instance::kNoParentInstance;
     if (!object.static_geometry->triangles.empty() || !object.static_geometry->points.empty()) {
         parent = std::ssize(assembly.instances);
         assembly.instances.push_back({object.static_geometry, transform.scene_from_object, unique_name});
@@ -185,7 +185,7 @@ void add(Assembly& assembly, const Assembly& object, const AnimatedTransform& tr
             animated_transform(all_times({transform.motion.get(), part.motion.get()}),
                                [&](double time) { return transform.at(time) * part.transform_at(time); }));
         added.name = names.take(unique_name + (unique_name.empty() || part.name.empty() ? "" : "/") + part.name);
-        added.part_of = part.part_of == Instance::kNoWhole ? parent : first_part + part.part_of;
+        added.part_of = part.part_of == Instance::kNoParentInstance ? parent : first_part + part.part_of;
         assembly.instances.push_back(std::move(added));
     }
 }

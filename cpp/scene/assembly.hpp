@@ -46,13 +46,13 @@ struct AnimatedTransform {
 
 /// An instance of an object: the triangles and point lights of another scene, without its suns and environment.
 struct Instance {
-    static constexpr std::ptrdiff_t kNoWhole = -1;  ///< `part_of` of an instance without a parent
+    static constexpr std::ptrdiff_t kNoParentInstance = -1;  ///< `part_of` of an instance without a parent
 
     std::shared_ptr<const Scene> object;
     Affine<double> scene_from_object;  ///< for an animated instance: at time 0
     std::string name;  ///< for messages and look-up; may be empty
-    /// Index of the parent instance, with which this one moves, or kNoWhole. A part comes after its parent.
-    std::ptrdiff_t part_of = kNoWhole;
+    /// Index of the parent instance, with which this one moves, or kNoParentInstance. A part comes after its parent.
+    std::ptrdiff_t part_of = kNoParentInstance;
     std::shared_ptr<const Motion> motion = nullptr;  ///< null: not animated
 
     /// Returns scene_from_object at a time in seconds.
@@ -119,7 +119,7 @@ Assembly with_static_geometry(Assembly assembly, Change&& change) {
 }
 
 /// Returns the scene frozen at a time: every instance has a fixed transform.
-Assembly standing_at(Assembly assembly, double time_s);
+Assembly frozen_at(Assembly assembly, double time_s);
 
 /// True if two transforms are equal up to rounding (1e-9, relative).
 bool are_close(const Affine<double>& a, const Affine<double>& b);

@@ -158,7 +158,7 @@ Affine<double> transform_of(const ShotTable& table) {
     stretch.x.x = factors.x;
     stretch.y.y = factors.y;
     stretch.z.z = factors.z;
-    Affine<double> map = turn_of(table.point("rotation_deg").value_or(Vec3d{0, 0, 0})) * stretch;
+    Affine<double> map = euler_rotation(table.point("rotation_deg").value_or(Vec3d{0, 0, 0})) * stretch;
     map.origin = table.point("position_m").value_or(Vec3d{0, 0, 0});
     return map;
 }

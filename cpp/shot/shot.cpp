@@ -115,7 +115,7 @@ void resolve_noise_goal(ShotRequest& request) {
         return;
     }
     NoiseRequest noise = request.noise;
-    if (request.sampling == Sampling::unsaid && !noise.noise && !noise.noise_codes) {
+    if (request.sampling == Sampling::unspecified && !noise.noise && !noise.noise_codes) {
         noise.noise_codes = request.denoises ? kDefaultNoiseBeforeDenoising_codes : kDefaultNoiseGoal.noise;
         if (!noise.seconds) noise.seconds = kDefaultNoiseGoal.seconds;
     }
@@ -245,8 +245,8 @@ std::uint32_t frame_seed(std::uint32_t seed, int number) {
     return hash32(static_cast<std::uint32_t>(number), seed);
 }
 
-FollowedIso::FollowedIso(Session& session, const Assembly& scene, Camera camera, std::vector<CameraKey> keys,
-                         RenderSettings settings, double frames_per_second, double smoothing_s)
+AutoIso::AutoIso(Session& session, const Assembly& scene, Camera camera, std::vector<CameraKey> keys,
+                 RenderSettings settings, double frames_per_second, double smoothing_s)
     : session_(session),
       scene_(scene),
       camera_(std::move(camera)),
@@ -255,7 +255,7 @@ FollowedIso::FollowedIso(Session& session, const Assembly& scene, Camera camera,
       frames_per_second_(frames_per_second),
       smoothing_s_(smoothing_s) {}
 
-double FollowedIso::at(int number, const Progress& progress) {
+double AutoIso::at(int number, const Progress& progress) {
     constexpr double kMaxAge = 5;  // in units of the smoothing time: older frames have weights below 1%
     const double frames = smoothing_s_ * frames_per_second_;
     const int first = std::max(std::min(number, 1), number - static_cast<int>(std::min(kMaxAge * frames, 1e6)));
@@ -268,7 +268,7 @@ double FollowedIso::at(int number, const Progress& progress) {
     return std::exp(sum / weights);
 }
 
-double FollowedIso::metered(int number, const Progress& progress) {
+double AutoIso::metered(int number, const Progress& progress) {
     const auto known = metered_.find(number);
     if (known != metered_.end()) return known->second;
     const Camera camera = camera_at(camera_, keys_, {}, frame_opens_s(camera_, number, frames_per_second_));

@@ -34,11 +34,11 @@ std::uint32_t frame_seed(std::uint32_t seed, int number);
 /// Auto-ISO of a video: the ISO number of a frame is the mean, in stops, of the metered ISO numbers of this and earlier
 /// frames, with weights exp(-age / smoothing_s). Frames before frame 1 do not count. The result depends on the frame
 /// alone, not on earlier calls.
-class FollowedIso {
+class AutoIso {
 public:
     /// `session` and `scene` must outlive this object.
-    FollowedIso(Session& session, const Assembly& scene, Camera camera, std::vector<CameraKey> keys,
-                RenderSettings settings, double frames_per_second, double smoothing_s);
+    AutoIso(Session& session, const Assembly& scene, Camera camera, std::vector<CameraKey> keys,
+            RenderSettings settings, double frames_per_second, double smoothing_s);
 
     /// ISO number of a frame. Throws InputError, also if no light reaches the film, and Cancelled.
     double at(int number, const Progress& progress);

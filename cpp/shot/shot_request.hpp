@@ -17,7 +17,7 @@ namespace realcam::shot {
 
 /// How the number of samples is determined.
 enum class Sampling {
-    unsaid,    ///< the user has not specified it: kDefaultNoiseGoal applies
+    unspecified,    ///< the user has not specified it: kDefaultNoiseGoal applies
     counted,   ///< settings.spp samples per pixel
     by_noise,  ///< spp is "auto": samples are taken until the noise goal is reached
 };
@@ -62,14 +62,14 @@ struct ShotRequest {
     std::vector<CameraKey> keys;
     std::vector<std::string> key_locations;  ///< position of each key in the file, for messages
     Shake shake;
-    /// Smoothing time of the ISO number in a video whose ISO number follows the meter (FollowedIso).
+    /// Smoothing time of the ISO number in a video whose ISO number follows the meter (AutoIso).
     std::optional<double> iso_follows_s;
     CameraModel model = CameraModel::full_lens;
     std::optional<double> exposure_time_s;
     double iso = 100;
 
     RenderSettings settings;
-    Sampling sampling = Sampling::unsaid;
+    Sampling sampling = Sampling::unspecified;
     NoiseRequest noise;
     bool denoises = false;  ///< set by --denoise
     /// Set by --no-denoise. Otherwise pictures for screens that miss the default noise goal are denoised.

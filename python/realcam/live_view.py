@@ -16,7 +16,7 @@ from .settings import settings_of
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._core import _SettingWords
+    from ._core import _SettingsKwargs
 
 
 class LiveView:
@@ -38,7 +38,7 @@ class LiveView:
         settings: RenderSettings | None = None,
         *,
         device: str = "auto",
-        **changes: Unpack[_SettingWords],
+        **changes: Unpack[_SettingsKwargs],
     ) -> None:
         self.settings = settings_of(settings, changes, RenderSettings(effects=(), max_bounces=1))
         self._core = _core._LiveView(scene, device)
@@ -50,7 +50,7 @@ class LiveView:
         settings: RenderSettings | None = None,
         *,
         tone: str = "film",
-        **changes: Unpack[_SettingWords],
+        **changes: Unpack[_SettingsKwargs],
     ) -> LiveFrame:
         """Starts a frame with spp more samples per pixel, by default 1.
 

@@ -13,7 +13,7 @@ from .settings import settings_of
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._core import _SettingWords
+    from ._core import _SettingsKwargs
 
 
 def plan(
@@ -23,7 +23,7 @@ def plan(
     *,
     device: str = "auto",
     times: bool = False,
-    **changes: Unpack[_SettingWords],
+    **changes: Unpack[_SettingsKwargs],
 ) -> Plan:
     """Decides which effects and which camera model a picture requires, with the magnitude of each effect.
 

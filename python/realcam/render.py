@@ -15,7 +15,7 @@ from .settings import settings_of
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._core import _SettingWords
+    from ._core import _SettingsKwargs
 
 ProgressCallback = Callable[[float], bool | None]
 
@@ -45,7 +45,7 @@ def render(
     device: str = "auto",
     progress: bool | ProgressCallback = False,
     on_stop: str = "raise",
-    **changes: Unpack[_SettingWords],
+    **changes: Unpack[_SettingsKwargs],
 ) -> Image:
     """Photographs a scene: every sample is a path from the film, through the lens, to the scene and its lights.
 

@@ -20,7 +20,7 @@ from .settings import setting, settings_of
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._core import _Region, _SettingWords
+    from ._core import _Region, _SettingsKwargs
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Session:
         settings: RenderSettings | None = None,
         *,
         device: str = "auto",
-        **changes: Unpack[_SettingWords],
+        **changes: Unpack[_SettingsKwargs],
     ) -> None:
         self._requested_settings, self._requested_camera, self._device = settings_of(settings, changes), camera, device
         self._resolved = self._plan(scene, camera)  # raises if scene or camera have the wrong type
@@ -177,15 +177,15 @@ class Session:
         CPU took them in steps of 256 samples, it is bitwise equal to a single session's.
         Raises InputError, and what add raises.
         """
-        found = self._core.expose_region(region, first, spp, counts)
+        found = self._core.sample_region(region, first, spp, counts)
         layers = None
         if counts is None and self.has_sampled_layers:
-            layers = self._core.see_region(region, first, spp)
+            layers = self._core.layer_sums_of_region(region, first, spp)
         return FilmPart(_region(region), first, spp, found["pixels"], layers, stats=found["stats"])
 
     def expose_layers(self, region: _Region, first: int = 0, spp: int = 256) -> FilmPart:
         """Renders only the layers of expose(), for all samples. Raises what expose() raises."""
-        return FilmPart(_region(region), first, spp, layers=self._core.see_region(region, first, spp))
+        return FilmPart(_region(region), first, spp, layers=self._core.layer_sums_of_region(region, first, spp))
 
     def expose_traced_light(self, first: int = 0, spp: int = 256) -> FilmPart:
         """Renders ghosts and other light that is traced separately and splatted on the film, not sampled per pixel.
@@ -193,7 +193,7 @@ class Session:
         The part covers the whole film. A picture requires it for all of its samples, or not at all if part.splats is
         empty, which a part of 0 samples already shows. Raises InputError, and what add() raises.
         """
-        return FilmPart(None, first, spp, splats=self._core.expose_splats(first, spp))
+        return FilmPart(None, first, spp, splats=self._core.sample_splats(first, spp))
 
     def image_of(self, parts: Iterable[FilmPart]) -> Image:
         """Returns the picture assembled from all parts; each must occur once, in the order of their samples.

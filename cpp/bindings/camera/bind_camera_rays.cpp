@@ -210,9 +210,8 @@ Returns CameraRays. Raises InputError and DeviceError.)")
              R"(Returns an iterator over CameraRays with the rays of generate_rays in chunks of at most max_rays, for
 pictures whose rays do not fit into memory. A chunk may end between two rays of a pixel. Raises InputError and
 DeviceError.)");
-    m.def(
-        "_film_of_white", &film_of_white, "illuminant"_a,
-        R"(Internal. Returns one row per wavelength cell of an illuminant, (N, 5): its shortest and longest wavelength
+    m.def("_film_of_white", &film_of_white, "illuminant"_a,
+          R"(Internal. Returns one row per wavelength cell of an illuminant, (N, 5): its shortest and longest wavelength
 in nm, and the film's response (red, green, blue) to a white surface if all light has wavelengths of this cell.)");
 }
 

@@ -139,7 +139,7 @@ Typed<"tuple[NDArray[float64], ...]", py::tuple> rays_through(const Camera& came
 
 /// Returns the pinhole camera that the lens is to first order. Throws InputError if there is none.
 PinholeCamera pinhole_of(const Camera& camera) {
-    const std::optional<PinholeCamera> pinhole = pinhole_camera(camera, middle_pose(camera));
+    const std::optional<PinholeCamera> pinhole = pinhole_camera(camera, pose_at_mid_exposure(camera));
     if (!pinhole)
         throw InputError(
             "lens \"" + camera.lens.name + "\" has no centre of projection: its entrance pupil lies at infinity" +
@@ -178,9 +178,8 @@ void bind_projection(py::module_& m) {
     m.attr("ProjectionStatus") =
         py::module_::import("enum").attr("IntEnum")("ProjectionStatus", values, "module"_a = "realcam");
     py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
-        .def(
-            "project", &project, "points_m"_a, py::kw_only(), "through"_a = "light", "return_status"_a = false,
-            R"(Projects points of the scene to pixels, by real rays at the lens's design wavelength or by the camera
+        .def("project", &project, "points_m"_a, py::kw_only(), "through"_a = "light", "return_status"_a = false,
+             R"(Projects points of the scene to pixels, by real rays at the lens's design wavelength or by the camera
 model.
 points_m: (N, 3), in metres, scene. Occlusion by the scene is not considered.
 through: projection ray of a point. "light": the centroid of its light, as pictures show it, by the centroid ray of each

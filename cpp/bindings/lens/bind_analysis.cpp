@@ -70,7 +70,7 @@ AimedRays aim(const LensSystem& lens, const Points& pupil, double field_deg, std
     {
         const Unlocked unlocked;
         const RayLoop loop = parallel_ray_loop(heed_signals);
-        const std::vector<AimedRay> rays = aim_all(aimer, pattern, stop_reach(lens), loop);
+        const std::vector<AimedRay> rays = aim_all(aimer, pattern, stop_bounding_radius(lens), loop);
         loop.for_all(rays.size(), [&](std::size_t first, std::size_t last) {
             constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
             const auto write = [](Vec3d v, double* to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; };
@@ -116,7 +116,7 @@ PythonWavefront make_wavefront(const LensSystem& lens, double field_deg, std::op
                          : *remove == "tilt" ? Removed::tilt
                                              : Removed::focus,
                          exit_pupil == "real" ? ExitPupil::real : ExitPupil::paraxial, loop),
-            wavelength, stop_reach(lens), lens.last_vertex(), pattern == "grid" && !pupil ? samples : 0};
+            wavelength, stop_bounding_radius(lens), lens.last_vertex(), pattern == "grid" && !pupil ? samples : 0};
 }
 
 /// Returns the OPD in waves as an array of shape (columns, columns).

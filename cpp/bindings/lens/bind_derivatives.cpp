@@ -48,10 +48,10 @@ const std::map<std::string, LensQuantity>& quantities() {
 std::vector<LensVariable> variables_from(const Variables& variables) {
     std::vector<LensVariable> list;
     for (const auto& [name, surface, number, number_y] : variables) {
-        const auto has_name = [&](const FormWords& words) { return name == words.key; };
-        const auto terms = std::find_if(kFormWords.begin(), kFormWords.end(), has_name);
-        if (terms != kFormWords.end()) {
-            const auto index = static_cast<int>(terms - kFormWords.begin());
+        const auto has_name = [&](const FormNames& words) { return name == words.key; };
+        const auto terms = std::find_if(kFormNames.begin(), kFormNames.end(), has_name);
+        if (terms != kFormNames.end()) {
+            const auto index = static_cast<int>(terms - kFormNames.begin());
             list.push_back({LensQuantity::terms, surface, number, number_y, index});
             continue;
         }
@@ -59,7 +59,7 @@ std::vector<LensVariable> variables_from(const Variables& variables) {
         if (found == quantities().end()) {
             std::string all;
             for (const auto& [known, quantity] : quantities()) all += known + ", ";
-            for (const FormWords& words : kFormWords) all += words.key + std::string(", ");
+            for (const FormNames& words : kFormNames) all += words.key + std::string(", ");
             throw InputError("unknown quantity \"" + name + "\"; expected one of " + all.substr(0, all.size() - 2));
         }
         list.push_back({found->second, surface, number, number_y});

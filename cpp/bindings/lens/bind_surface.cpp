@@ -64,14 +64,14 @@ std::string surface_text(const Surface& s) {
 /// Returns the keys of all kinds of terms in kFormTerms.
 Typed<"tuple[str, ...]", py::tuple> form_terms() {
     py::tuple keys(kFormTermsCount);
-    for (std::size_t kind = 0; kind < kFormTermsCount; ++kind) keys[kind] = kFormWords[kind].key;
+    for (std::size_t kind = 0; kind < kFormTermsCount; ++kind) keys[kind] = kFormNames[kind].key;
     return keys;
 }
 
 /// Describes the dicts of all kinds of terms, in one line each: `zernike: {"order": "noll" or "fringe", ...}.`
 std::string terms_text() {
     std::string text;
-    for (const FormWords& words : kFormWords) {
+    for (const FormNames& words : kFormNames) {
         text += std::string(words.key) + ": {";
         if (*words.variant_key)
             text += '"' + std::string(words.variant_key) + "\": \"" + words.variants[0] + "\" or \"" +
@@ -136,7 +136,7 @@ Raises InputError.)";
                 "type"_a = "refracting", "coating"_a = "unknown", "decentre_mm"_a = std::vector<double>{0, 0, 0},
                 "tilt_deg"_a = std::vector<double>{0, 0, 0}, "returns"_a = false, "form"_a = py::none(),
                 "radius_of_curvature_x_mm"_a = py::none(), "conic_x"_a = py::none(), "radial_terms"_a = py::none(),
-                "xy_terms"_a = py::none(), (py::arg(kFormWords[kind].key) = py::none())..., "aperture"_a = py::none(),
+                "xy_terms"_a = py::none(), (py::arg(kFormNames[kind].key) = py::none())..., "aperture"_a = py::none(),
                 "obscurations"_a = py::none(), text.c_str());
 }
 
@@ -173,7 +173,7 @@ void bind_surface(py::module_& m) {
     def_constructor(surface, kFormTermsIndices);
     for (std::size_t kind = 0; kind < kFormTermsCount; ++kind)
         surface.def_property_readonly(
-            kFormWords[kind].key, [kind](const Surface& s) { return terms_of(s, kind); },
+            kFormNames[kind].key, [kind](const Surface& s) { return terms_of(s, kind); },
             "Terms of the sag, see Surface(); an empty dict if there are no such terms.");
     surface
         .def_property_readonly(

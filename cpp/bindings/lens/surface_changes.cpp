@@ -57,7 +57,7 @@ Pair pair_of(Vec2d v) {
 /// Converts a dict such as {"order": "noll", "radius_mm": 10, "coefficients_mm": [...]}.
 template <class Terms>
 Terms terms_from(const py::dict& dict) {
-    constexpr FormWords words = Terms::words;
+    constexpr FormNames words = Terms::words;
     const std::string what = words.key;
     Terms terms;
     if constexpr (requires { Terms::variant; }) {
@@ -181,7 +181,7 @@ void change_form(Surface& surface, const FormChanges& changes) {
         for (const auto& [powers, value] : *changes.xy_terms) form.xy.push_back({powers.first, powers.second, value});
     }
     std::size_t kind = 0;
-    over_rows(form, [&](auto& terms) { change_terms(terms, changes.terms[kind++]); });
+    for_each_kind_of_terms(form, [&](auto& terms) { change_terms(terms, changes.terms[kind++]); });
     if (changes.aperture) change_aperture(surface.aperture_shape, *changes.aperture);
     if (changes.obscurations) {
         surface.aperture_shape.obscurations.clear();
@@ -215,10 +215,10 @@ std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface) {
 FormDict terms_of(const Surface& surface, std::size_t kind) {
     py::dict result;
     std::size_t i = 0;
-    over_rows(surface.form, [&](const auto& terms) {
+    for_each_kind_of_terms(surface.form, [&](const auto& terms) {
         if (i++ != kind || !terms) return;
         using Terms = TermsIn<decltype(terms)>;
-        constexpr FormWords words = Terms::words;
+        constexpr FormNames words = Terms::words;
         if constexpr (requires { Terms::variant; })
             result[words.variant_key] = words.variants[static_cast<std::size_t>((*terms).*Terms::variant)];
         result["radius_mm"] = terms->radius;

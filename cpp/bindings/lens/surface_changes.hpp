@@ -125,7 +125,7 @@ void def(std::index_sequence<kind...>, py::class_<T>& type, const char* name, Fu
         "aspheric_coefficients"_a = py::none(), "inner_semi_diameter_mm"_a = py::none(), "type"_a = py::none(),
         "coating"_a = py::none(), "decentre_mm"_a = py::none(), "tilt_deg"_a = py::none(), "returns"_a = py::none(),
         "form"_a = py::none(), "radius_of_curvature_x_mm"_a = py::none(), "conic_x"_a = py::none(),
-        "radial_terms"_a = py::none(), "xy_terms"_a = py::none(), (py::arg(kFormWords[kind].key) = py::none())...,
+        "radial_terms"_a = py::none(), "xy_terms"_a = py::none(), (py::arg(kFormNames[kind].key) = py::none())...,
         "aperture"_a = py::none(), "obscurations"_a = py::none(), text);
 }
 

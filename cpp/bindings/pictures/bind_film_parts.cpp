@@ -33,7 +33,7 @@ SplatFilm splat_film_from(const py::dict& splats) {
         throw InputError("sums of splats must be an array of shape (films, H, W, 3)");
     SplatFilm film;
     const int light = splats["light"].cast<int>();
-    if (light < 0 || light >= kMostSplats) throw InputError("the splats have an unknown kind of light");
+    if (light < 0 || light >= kMaxGhostViews) throw InputError("the splats have an unknown kind of light");
     film.light = static_cast<GhostLight>(light);
     film.blocks = splats["blocks"].cast<std::vector<unsigned long long>>();
     film.units_per_lux = splats["units_per_lux"].cast<double>();
@@ -86,7 +86,7 @@ public:
         tiles_.add(floats_of(exposure), values_of<std::uint32_t>(counts), floats_of(traced));
     }
 
-    std::string shortfall() const { return shortfall_of(tiles_.reached(), goal_); }
+    std::string shortfall() const { return shortfall_message(tiles_.reached(), goal_); }
     double left() const { return tiles_.left(); }
 
 private:
@@ -147,7 +147,7 @@ void bind_film_parts(py::module_& m) {
     PYBIND11_NUMPY_DTYPE(LayerSum, weight, met, normal, albedo, circle_mm);
     m.attr("_PIXEL_SUM") = py::dtype::of<PixelSum>();
     m.attr("_LAYER_SUM") = py::dtype::of<LayerSum>();
-    m.attr("_TRACED_LIGHTS") = kMostSplats;
+    m.attr("_TRACED_LIGHTS") = kMaxGhostViews;
     m.attr("_SAMPLES_PER_SUM") = kSamplesPerSum;
     m.attr("_SHARING_TILE_SIDE") = SampleSharing::kTileSide;
     py::set sampled_layers;

@@ -64,7 +64,7 @@ public:
     void show(const Assembly& scene) {
         session_.use([&](const auto&) { view_->show(scene); });
     }
-    void cancel() { session_.cancel(Collected::drop); }
+    void cancel() { session_.cancel(OnCancel::drop); }
 
 private:
     OwnedSession session_;

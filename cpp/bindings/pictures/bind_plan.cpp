@@ -63,9 +63,9 @@ std::tuple<std::string, RenderSettings, std::string, std::string> resolved_video
     if (!settings.needs_plan()) return {io::name_of(camera.model), settings, "", ""};  // avoids creating a session
     std::vector<Camera> cameras = {camera};
     cameras.insert(cameras.end(), others.begin(), others.end());
-    ResolvedFilm video = OwnedSession::shared(device).use([&](const auto& session) {
-        return resolve_film(*session, scene, cameras, settings, fast_pupil_tracer(),
-                            [](double) { return heed_signals(); });
+    ResolvedSettings video = OwnedSession::shared(device).use([&](const auto& session) {
+        return resolve_settings(*session, scene, cameras, settings, fast_pupil_tracer(),
+                                [](double) { return heed_signals(); });
     });
     return {io::name_of(video.model), std::move(video.settings), video.summary, video.warning};
 }

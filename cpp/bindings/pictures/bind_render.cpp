@@ -200,7 +200,7 @@ tone: tone curve, "film" (soft highlights) or "linear" (clipped highlights). Rai
         .def("__repr__", [](const Device& d) { return "<realcam.Device " + line_text(d) + '>'; });
     m.def("devices", &devices, "Returns the list of all devices of this machine, the CPU first.");
     m.def(
-        "_name_cuda_plugin", [](const py::bytes& path) { name_cuda_plugin(path); }, "path"_a,
+        "_name_cuda_plugin", [](const py::bytes& path) { set_cuda_plugin_path(path); }, "path"_a,
         "Internal. Sets the path of the CUDA plug-in, which is loaded when a GPU is first used.");
 }
 

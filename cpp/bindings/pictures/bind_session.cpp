@@ -55,7 +55,7 @@ public:
         const ReachedNoise reached =
             with_session([&](Session& session, const Progress& progress) { return session.add_until(goal, progress); });
         return py::dict("noise"_a = reached.noise, "is_reached"_a = reached.is_reached,
-                        "spp_wanted"_a = reached.samples_wanted, "shortfall"_a = shortfall_of(reached, goal));
+                        "spp_wanted"_a = reached.samples_required, "shortfall"_a = shortfall_message(reached, goal));
     }
 
     /// Returns the picture of all samples so far.
@@ -70,30 +70,30 @@ public:
 
     /// Returns radiance sums of a region's pixels for `count` samples with indices from `first`, apart from this
     /// picture. `counts`: smaller number of samples for each pixel, row by row; std::nullopt: all of them.
-    RegionSumArrays expose_region(const RegionNumbers& numbers, std::int64_t first, int count,
+    RegionSumArrays sample_region(const RegionNumbers& numbers, std::int64_t first, int count,
                                   const std::optional<InputArray<std::uint32_t>>& counts) {
         const FilmRegion region = region_from(numbers);
         std::vector<std::uint32_t> samples_per_pixel;
         if (counts) samples_per_pixel.assign(counts->data(), counts->data() + counts->size());
         return region_sums_to(with_session([&](Session& session, const Progress& progress) {
-                                  return session.expose_region(region, first, count, samples_per_pixel, progress);
+                                  return session.sample_region(region, first, count, samples_per_pixel, progress);
                               }),
                               region);
     }
 
     /// Returns layer sums of a region's pixels, of the first surfaces that these samples hit.
-    VoidArray see_region(const RegionNumbers& numbers, std::int64_t first, int count) {
+    VoidArray layer_sums_of_region(const RegionNumbers& numbers, std::int64_t first, int count) {
         const FilmRegion region = region_from(numbers);
         return layer_sums_to(with_session([&](Session& session, const Progress& progress) {
-                                 return session.see_region(region, first, count, progress);
+                                 return session.layer_sums_of_region(region, first, count, progress);
                              }),
                              region);
     }
 
     /// Returns the light on the whole film that is traced apart from the samples of pixels.
-    SplatList expose_splats(std::int64_t first, int count) {
+    SplatList sample_splats(std::int64_t first, int count) {
         return splats_to(with_session(
-            [&](Session& session, const Progress& progress) { return session.expose_splats(first, count, progress); }));
+            [&](Session& session, const Progress& progress) { return session.sample_splats(first, count, progress); }));
     }
 
     /// Develops a film that was accumulated from parts, wherever they were exposed.
@@ -117,7 +117,7 @@ public:
         return array_from(std::move(samples.counts), {samples.height, samples.width});
     }
 
-    void cancel() { session_.cancel(Collected::keep); }
+    void cancel() { session_.cancel(OnCancel::keep); }
 
     const Assembly& scene() const { return scene_; }
     const Camera& camera() const { return camera_; }
@@ -142,12 +142,12 @@ void bind_session(py::module_& m) {
         .def("add_until", &PythonSession::add_until, "settings"_a,
              "Takes samples until the noise goal of these settings is reached.")
         .def("picture", &PythonSession::picture, "Returns the fields of an Image of all samples so far.")
-        .def("expose_region", &PythonSession::expose_region, "region"_a, "first"_a, "count"_a, "counts"_a = py::none(),
+        .def("sample_region", &PythonSession::sample_region, "region"_a, "first"_a, "count"_a, "counts"_a = py::none(),
              R"(Returns pixel sums of a region, for count samples with indices from first. region: (column, row, width,
 height). counts: number of the samples that each pixel takes, row by row; None: all.)")
-        .def("see_region", &PythonSession::see_region, "region"_a, "first"_a, "count"_a,
+        .def("layer_sums_of_region", &PythonSession::layer_sums_of_region, "region"_a, "first"_a, "count"_a,
              "Returns layer sums of a region, of the first surfaces that these samples hit.")
-        .def("expose_splats", &PythonSession::expose_splats, "first"_a, "count"_a,
+        .def("sample_splats", &PythonSession::sample_splats, "first"_a, "count"_a,
              "Returns films of the light that is traced apart from the samples of pixels.")
         .def(
             "picture_of",

@@ -28,7 +28,7 @@ Draft draft_of(const RenderSettings& settings) {
     if (const auto& goal = settings.noise) {
         (goal->unit == NoiseUnit::codes ? draft.noise.noise_codes : draft.noise.noise) = goal->noise;
         if (std::isfinite(goal->seconds)) draft.noise.seconds = goal->seconds;
-        draft.noise.max_spp = goal->most_samples;
+        draft.noise.max_spp = goal->max_samples;
     }
     return draft;
 }
@@ -363,7 +363,7 @@ void bind_settings(py::module_& m) {
         type.def(py::init([](const py::kwargs& keywords) { return changed({}, keywords); }), signature().c_str())
             .def(
                 "with_", [](const RenderSettings& self, const py::kwargs& changes) { return changed(self, changes); },
-                "with_(self: RenderSettings, **changes: Unpack[_SettingWords]) -> RenderSettings\n\n"
+                "with_(self: RenderSettings, **changes: Unpack[_SettingsKwargs]) -> RenderSettings\n\n"
                 "Returns a copy with changes, by the keywords of the constructor. Settings that a change makes "
                 "meaningless are removed:\nthe noise goal if spp is a number, and the illuminant if no effect uses it. "
                 "Raises InputError.");

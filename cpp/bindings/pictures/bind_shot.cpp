@@ -149,7 +149,7 @@ std::vector<double> followed_isos(const Assembly& scene, const Camera& camera, c
     const py::none no_callback;
     const Progress report = progress_of(no_callback);
     return OwnedSession::shared(device).use([&](const auto& session) {
-        shot::FollowedIso followed(*session, scene, camera, keys, settings, frames_per_second, smoothing_s);
+        shot::AutoIso followed(*session, scene, camera, keys, settings, frames_per_second, smoothing_s);
         std::vector<double> isos;
         for (const int frame : frames) isos.push_back(followed.at(frame, report));
         return isos;
@@ -291,7 +291,7 @@ Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std
                     "keys"_a = py::tuple(py::cast(request.keys)),
                     "shake"_a = request.shake.is_still() ? std::nullopt : std::optional(request.shake),
                     "iso_follows_s"_a = request.iso_follows_s);
-    return py::make_tuple(std::move(fields), request.sampling == shot::Sampling::unsaid);
+    return py::make_tuple(std::move(fields), request.sampling == shot::Sampling::unspecified);
 }
 
 /// Returns the metadata of an image file, text by name.

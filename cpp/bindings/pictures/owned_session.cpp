@@ -45,7 +45,7 @@ OwnedSession& OwnedSession::shared(const std::string& device) {
     return *session;
 }
 
-void OwnedSession::cancel(Collected collected) const {
+void OwnedSession::cancel(OnCancel collected) const {
     const std::shared_ptr<Session> session = session_;
     if (!session) return;
     const Unlocked unlocked;
@@ -69,7 +69,7 @@ void OwnedSession::cancel_all() {
     }
     for (const auto& session : sessions) {
         try {
-            session->cancel(Collected::drop);
+            session->cancel(OnCancel::drop);
         } catch (const DeviceError&) {
             // A lost GPU runs no kernels that could be stopped.
         }

@@ -43,7 +43,7 @@ public:
 
     /// Cancels the current work, from any thread. `collected`: whether samples taken so far are kept. Must be called
     /// with the GIL.
-    void cancel(Collected collected) const;
+    void cancel(OnCancel collected) const;
 
 private:
     struct Mutex {

@@ -165,7 +165,7 @@ times_s: times of K keys in seconds of the scene, increasing. Between keys the t
   instance stands still. Motion during the exposure is blurred (Camera.shutter_opens_s).
 Cheap enough to call for every frame: acceleration structures are reused. Raises InputError if there is no such
 instance, if several have the name, and for an invalid transform or motion.)")
-        .def("at_time", &standing_at, "time_s"_a,
+        .def("at_time", &frozen_at, "time_s"_a,
              "Returns the scene at a time, in seconds: with the transforms of that time, and without motion.")
         .def_property_readonly(
             "instances", &instances_of,

@@ -250,9 +250,8 @@ light; None: there is none.)"},
         Field{"clearcoat", &M::clearcoat, "Fraction of the surface with a clear coat."},
         Field{"clearcoat_roughness", &M::clearcoat_roughness, "Roughness of the clear coat, 0 to 1."},
         Field{"clearcoat_normal_scale", &M::clearcoat_normal_scale, "Factor on x and y of clearcoat_normal_map."},
-        Field{
-            "metallic_roughness_texture", &M::metallic_roughness_texture,
-            R"(Texture of roughness (green) and metallic (blue), linear, (H, W, 4), read-only; shininess_texture of a
+        Field{"metallic_roughness_texture", &M::metallic_roughness_texture,
+              R"(Texture of roughness (green) and metallic (blue), linear, (H, W, 4), read-only; shininess_texture of a
 Phong material. None: there is none.)"},
         Field{"specular_weight_texture", &M::specular_weight_texture, kScalarTexture},
         Field{"clearcoat_texture", &M::clearcoat_texture, kScalarTexture},
@@ -339,9 +338,8 @@ material without a name is "material 3", the second "wood" is "wood.2".)")
         .def("with_material", &with_material, "which"_a, "material"_a,
              R"(Returns the scene with a material replaced, including its textures. which: its name in materials, or its
 index from 0. The new material takes over the name. Raises InputError.)")
-        .def(
-            "with_texture", &with_texture, "material"_a, "pixels"_a,
-            R"(Returns the scene with another texture on a material. material: its name in materials, or its index from
+        .def("with_texture", &with_texture, "material"_a, "pixels"_a,
+             R"(Returns the scene with another texture on a material. material: its name in materials, or its index from
 0.
 pixels: as for Material(texture=...). Raises InputError, also if the vertices have no texture coordinates.)");
 }

@@ -149,9 +149,8 @@ layer: layer of an OpenEXR file; "": the main image. Raises InputError and Image
         .def("with_sun", &with_sun, "direction"_a, "illuminance"_a,
              R"(Returns the scene with an additional sun: parallel light that travels along direction, (x, y, z).
 illuminance: (r, g, b) in lux, on a surface perpendicular to the light. Raises InputError.)")
-        .def(
-            "with_point_light", &with_point_light, "position_m"_a, "intensity"_a,
-            R"(Returns the scene with an additional point light. position_m: (x, y, z); intensity: (r, g, b) in cd.
+        .def("with_point_light", &with_point_light, "position_m"_a, "intensity"_a,
+             R"(Returns the scene with an additional point light. position_m: (x, y, z); intensity: (r, g, b) in cd.
 Raises InputError.)")
         .def("with_spot_light", &with_spot_light, "position_m"_a, "direction"_a, "intensity"_a, py::kw_only(),
              "inner_cone_deg"_a = 0.0, "outer_cone_deg"_a = 45.0,

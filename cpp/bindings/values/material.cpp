@@ -109,8 +109,8 @@ std::shared_ptr<const Texture> texture_from(const py::object& object, io::Textur
     const bool is_float = holds_fractions(pixels);
     const std::string size =
         "a texture of " + std::to_string(pixels.shape(1)) + " x " + std::to_string(pixels.shape(0)) + " pixels ";
-    if (texels > io::kMostTexturePixels)
-        throw InputError(size + "is too large; at most " + std::to_string(io::kMostTexturePixels >> 20) +
+    if (texels > io::kMaxTexturePixels)
+        throw InputError(size + "is too large; at most " + std::to_string(io::kMaxTexturePixels >> 20) +
                          " million pixels are allowed");
     const std::size_t count = 4 * texels;
     if (const std::string why = io::too_much_memory(count * (is_float ? sizeof(float) : 1)); !why.empty())

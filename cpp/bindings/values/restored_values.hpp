@@ -178,7 +178,7 @@ struct RestoredCheck<Assembly> {
         SceneChecks().check(scene);
         for (std::size_t i = 0; i < scene.instances.size(); ++i) {
             const std::ptrdiff_t whole = scene.instances[i].part_of;
-            if (whole < Instance::kNoWhole || whole >= static_cast<std::ptrdiff_t>(i))
+            if (whole < Instance::kNoParentInstance || whole >= static_cast<std::ptrdiff_t>(i))
                 throw InputError(label(scene, i) + " is a part of instance " + std::to_string(whole) +
                                  "; expected an instance before it in the list");
         }

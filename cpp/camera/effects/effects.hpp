@@ -72,7 +72,7 @@ struct EffectInfo {
     const char* usage = "";  ///< further notes for the user
     bool has_wavelengths = false;  ///< each sample has a wavelength, so an illuminant can be named
     bool needs_full_lens = false;  ///< acts at the lens's surfaces, which only the camera model full has
-    bool needs_round_lens = false;  ///< needs a centred, rotationally symmetric lens with a flat film
+    bool needs_rotational_lens = false;  ///< needs a centred, rotationally symmetric lens with a flat film
     bool needs_coatings = false;  ///< uses the coatings of the lens file; without them the result is a guess
     bool shows_in_previews = true;  ///< on in previews, which have fewer pixels than requested
     /// Relative render time with the effect on one CPU core and on a GPU: frame benchmark, double Gauss
@@ -132,7 +132,7 @@ inline constexpr EffectInfo kEffects[] = {
      .what = "the edges of the aperture spread light of each wavelength over the film, which gives lights starbursts",
      .needs = "a centred, rotationally symmetric lens",
      .has_wavelengths = true,
-     .needs_round_lens = true,
+     .needs_rotational_lens = true,
      .shows_in_previews = false,
      .cpu_time = 1.12,
      .gpu_time = 1.25},
@@ -149,7 +149,7 @@ inline constexpr EffectInfo kEffects[] = {
 };
 
 /// First active effect that has a property; null if there is none.
-constexpr const EffectInfo* first_that(const EffectChoice& effects, bool EffectInfo::* property) {
+constexpr const EffectInfo* first_active_with(const EffectChoice& effects, bool EffectInfo::* property) {
     for (const EffectInfo& effect : kEffects)
         if (effects.*effect.member && effect.*property) return &effect;
     return nullptr;
@@ -157,14 +157,14 @@ constexpr const EffectInfo* first_that(const EffectChoice& effects, bool EffectI
 
 /// True if any active effect has a property. A separate loop: with sanitizers, gcc does not accept an address other
 /// than null as a constant.
-constexpr bool any_is(const EffectChoice& effects, bool EffectInfo::* property) {
+constexpr bool any_active_has(const EffectChoice& effects, bool EffectInfo::* property) {
     for (const EffectInfo& effect : kEffects)
         if (effects.*effect.member && effect.*property) return true;
     return false;
 }
 
 constexpr bool Effects::have_wavelengths() const {
-    return any_is({*this}, &EffectInfo::has_wavelengths);
+    return any_active_has({*this}, &EffectInfo::has_wavelengths);
 }
 
 constexpr bool Effects::hold(const Effects& other) const {

@@ -67,8 +67,8 @@ std::vector<std::optional<Bounds>> with_neighbours(const std::vector<std::option
 /// FoundRay; `cell_of(ray)`: index of a ray's cell, negative if there is none. A margin of a sixteenth on each side
 /// covers the gaps between the rays.
 template <class Map, class CellOf>
-std::vector<GhostEntry> entries_around(const std::vector<FoundRay>& rays, Vec2f FoundRay::* point_of,
-                                       CellOf&& cell_of) {
+std::vector<GhostBounds> entries_around(const std::vector<FoundRay>& rays, Vec2f FoundRay::* point_of,
+                                        CellOf&& cell_of) {
     std::vector<std::optional<TargetRectangle<float>>> own(Map::kColumns * Map::kRows);
     for (const FoundRay& ray : rays) {
         const int cell = cell_of(ray);
@@ -77,9 +77,9 @@ std::vector<GhostEntry> entries_around(const std::vector<FoundRay>& rays, Vec2f 
         enlarge(own[static_cast<std::size_t>(cell)], {point, point});
         enlarge(own[static_cast<std::size_t>(cell)], {mirrored, mirrored});
     }
-    std::vector<GhostEntry> entries;
+    std::vector<GhostBounds> entries;
     for (const auto& box : with_neighbours<Map>(own)) {
-        GhostEntry& entry = entries.emplace_back();
+        GhostBounds& entry = entries.emplace_back();
         if (!box) continue;
         const float half_width = 0.5f * (box->high.y - box->low.y);
         // Positive, because 0 marks an empty entry.
@@ -261,21 +261,21 @@ template class EntrancePupilSearch<FilmRings>;
 template class EntrancePupilSearch<FilmCells>;
 
 template <class Map, class Directions>
-std::vector<GhostEntry> entries_of(const std::vector<FoundRay>& rays, const Directions& directions) {
+std::vector<GhostBounds> entries_of(const std::vector<FoundRay>& rays, const Directions& directions) {
     return entries_around<Map>(rays, &FoundRay::front,
                                [&](const FoundRay& ray) { return directions.cell_of(ray.half_tangents); });
 }
 
-template std::vector<GhostEntry> entries_of<FilmRings>(const std::vector<FoundRay>&, const HalfTangentBins&);
-template std::vector<GhostEntry> entries_of<FilmCells>(const std::vector<FoundRay>&, const GhostGrid&);
+template std::vector<GhostBounds> entries_of<FilmRings>(const std::vector<FoundRay>&, const HalfTangentBins&);
+template std::vector<GhostBounds> entries_of<FilmCells>(const std::vector<FoundRay>&, const GhostGrid&);
 
 template <class Map>
-std::vector<GhostEntry> exits_of(const std::vector<FoundRay>& rays) {
+std::vector<GhostBounds> exits_of(const std::vector<FoundRay>& rays) {
     return entries_around<Map>(rays, &FoundRay::rear, [](const FoundRay& ray) { return ray.film_cell; });
 }
 
-template std::vector<GhostEntry> exits_of<FilmRings>(const std::vector<FoundRay>&);
-template std::vector<GhostEntry> exits_of<FilmCells>(const std::vector<FoundRay>&);
+template std::vector<GhostBounds> exits_of<FilmRings>(const std::vector<FoundRay>&);
+template std::vector<GhostBounds> exits_of<FilmCells>(const std::vector<FoundRay>&);
 
 double etendue_of(const std::vector<FoundRay>& rays) {
     double sum = 0;
@@ -319,8 +319,8 @@ std::vector<FoundRay> rays_through_pupil(const PupilView& pupil, const LensView<
 
 }  // namespace
 
-PupilEntries::PupilEntries(const PupilView& pupil, const LensView<float>& lens, double film_radius,
-                           double film_distance, const PupilTracer& tracer) {
+PupilEntryBounds::PupilEntryBounds(const PupilView& pupil, const LensView<float>& lens, double film_radius,
+                                   double film_distance, const PupilTracer& tracer) {
     const std::vector<FoundRay> found = rays_through_pupil(pupil, lens, film_radius, film_distance, tracer);
     directions_ = FilmRings::directions_of({found});
     entries_ = entries_of<FilmRings>(found, directions_);

@@ -17,7 +17,7 @@ namespace REALCAM_NAMESPACE {
 /// Ray from the film that has left the lens along some optical path.
 struct FoundRay {
     Vec2f half_tangents;  ///< half_tangents() of its direction; for a rotationally symmetric lens, their length and 0
-    Vec2f front;  ///< where it leaves the lens, in the plane of a GhostEntry, mm
+    Vec2f front;  ///< where it leaves the lens, in the plane of a GhostBounds, mm
     int film_cell;  ///< index of the cell of the film map that contains its origin
     Vec2f target;  ///< point that it was sent to, in the coordinates of the film map (FilmRings, FilmCells)
     Vec2f stratum;  ///< size of its stratum in these coordinates
@@ -159,34 +159,34 @@ private:
 /// Entrance-pupil bounds of the light of an optical path, for each cell of the directions; empty bounds for a cell
 /// without rays. `Directions`: HalfTangentBins or GhostGrid.
 template <class Map, class Directions>
-std::vector<GhostEntry> entries_of(const std::vector<FoundRay>& rays, const Directions& directions);
+std::vector<GhostBounds> entries_of(const std::vector<FoundRay>& rays, const Directions& directions);
 
 /// Bounds of the rays where they leave the lens towards the film (FoundRay::rear), for each cell of the film map.
 template <class Map>
-std::vector<GhostEntry> exits_of(const std::vector<FoundRay>& rays);
+std::vector<GhostBounds> exits_of(const std::vector<FoundRay>& rays);
 
 /// Etendue of an optical path: the sum over its rays, mm^2 sr.
 double etendue_of(const std::vector<FoundRay>& rays);
 
 /// Entrance-pupil bounds of light from far away that reaches the film, by its angle to the axis; found with rays
 /// through the pupil.
-class PupilEntries {
+class PupilEntryBounds {
 public:
     /// `lens`: for light from the film to the scene. `film_radius`: radius of a circle that contains the film;
     /// `film_distance`: from the last vertex to the film, mm.
-    PupilEntries(const PupilView& pupil, const LensView<float>& lens, double film_radius, double film_distance,
-                 const PupilTracer& tracer);
+    PupilEntryBounds(const PupilView& pupil, const LensView<float>& lens, double film_radius, double film_distance,
+                     const PupilTracer& tracer);
 
     /// Upper bound of the tangents of half the angles to the axis of light that reaches the film.
     float largest_half_tangent() const { return directions_.largest; }
     /// Bounds for the tangent of half the angle to the axis; beyond the largest tangent, those of the last bin.
-    const GhostEntry& at(float half_tangent) const {
+    const GhostBounds& at(float half_tangent) const {
         return entries_[static_cast<std::size_t>(directions_.bin_of(half_tangent))];
     }
 
 private:
     HalfTangentBins directions_;
-    std::vector<GhostEntry> entries_;
+    std::vector<GhostBounds> entries_;
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -53,7 +53,7 @@ struct TracedLightsView {
     const float* share_of_area;  ///< probability of being sampled, given its light
     std::int32_t area_count;
     /// Number of light samples per sample of each pixel, times the factor that makes their density that of pixel
-    /// samples (traced_light_weight), mm^2 sr.
+    /// samples (light_tracing_density_ratio), mm^2 sr.
     float scale;
 
     /// Calls move(array, count) for every array.

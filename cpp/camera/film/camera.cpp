@@ -77,9 +77,9 @@ void validate(const Camera& camera) {
     check_film_reach(camera.lens, camera.film.radius_mm());
     if (!(camera.lens.stop_semi_diameter >= 0))
         throw InputError("the radius of the lens's open stop must be a length of 0 or more");
-    if (!(std::fabs(camera.shutter.opens_s) <= kMostSeconds))
+    if (!(std::fabs(camera.shutter.opens_s) <= kMaxTime_s))
         throw InputError("the time at which the shutter opens must lie within 1e9 s");
-    if (!is_between(0, camera.shutter.readout_time_s, kMostSeconds))
+    if (!is_between(0, camera.shutter.readout_time_s, kMaxTime_s))
         throw InputError("the readout time must be a number of seconds from 0 to 1e9");
     validate(camera.pose);
     validate(camera.motion);
@@ -197,7 +197,7 @@ void set_motion(Camera& camera, std::vector<PoseKey> keys) {
     camera.pose = pose_at(camera, 0);
 }
 
-bool lies_near(const Camera& camera, Vec3d origin_m) {
+bool is_near_origin(const Camera& camera, Vec3d origin_m) {
     const double focus_m = std::isfinite(camera.lens.focus_distance) ? camera.lens.focus_distance / 1000 : 1.0;
     return length(position_when_open(camera) - origin_m) <= 10 * focus_m;
 }

@@ -155,7 +155,7 @@ void set_motion(Camera& camera, std::vector<PoseKey> keys);
 /// True if a render space with this origin is accurate enough for the camera: the camera opens its shutter within ten
 /// focus distances of it (10 m when focused at infinity), where float32 still resolves a hundredth of a pixel's width
 /// at the plane in focus. The render space is moved to the camera only if this is false.
-bool lies_near(const Camera& camera, Vec3d origin_m);
+bool is_near_origin(const Camera& camera, Vec3d origin_m);
 
 /// Throws InputError if the camera's model has no GPU implementation.
 void validate_on_gpu(const Camera& camera);

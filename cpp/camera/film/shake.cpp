@@ -131,11 +131,11 @@ Camera shaken(Camera camera, const Shake& shake) {
     };
     for (const ShakeKey& key : shake.curve) add(key.time_s);
     for (const PoseKey& key : camera.motion) add(key.time_s);
-    times = sorted_once(std::move(times));
+    times = sorted_unique(std::move(times));
     std::vector<PoseKey> keys;
     for (const ShakeKey& key : shake_at(shake, times)) {
         const Pose pose = pose_at(camera, key.time_s);
-        Affine<double> displacement = turn_of(key.rotation_deg);
+        Affine<double> displacement = euler_rotation(key.rotation_deg);
         displacement.origin = key.position_m;
         const Affine<double> map = camera_detail::scene_from_camera(pose) * displacement;
         const double distance = length(pose.look_at_m - pose.position_m);

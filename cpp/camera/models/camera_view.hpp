@@ -65,18 +65,18 @@ struct ThickLens {
 };
 
 /// Pose of the camera in render space.
-struct CameraPlacement {
+struct CameraFrame {
     Vec3f position;  ///< centre of the unshifted film, metres
     Vec3f right, up, backward;  ///< unit: x, y, z of the lens frame
 };
 
-/// Parameters of a camera for the render kernels. The base CameraPlacement is the pose at the start of the exposure;
+/// Parameters of a camera for the render kernels. The base CameraFrame is the pose at the start of the exposure;
 /// the base EffectViews holds the tables of the effects.
-struct CameraView : CameraPlacement, EffectViews {
+struct CameraView : CameraFrame, EffectViews {
     CameraModel model;
     int width, height;  ///< size of the picture, pixels
     float film_half_width, film_half_height;  ///< mm
-    Vec2f film_middle;  ///< film centre, from the axis, mm
+    Vec2f film_centre;  ///< film centre, from the axis, mm
     float film_distance;  ///< last vertex to film, mm
     float film_curvature;  ///< see FilmSurface; 0 for a rotationally symmetric lens, whose film is flat
     float axis_irradiance;  ///< irradiance on the axis behind the real lens for unit radiance; used by the ideal models
@@ -96,22 +96,22 @@ struct CameraView : CameraPlacement, EffectViews {
     // Times as fractions of the exposure; 0 if nothing moves during it:
     float row_time;  ///< delay of each row of pixels after the row above
     float exposed_time;  ///< exposure time of each row
-    const CameraPlacement* keys;  ///< keyframes of a moving camera at uniformly spaced times; positions relative to the
-                                  ///< base placement
+    const CameraFrame* keys;  ///< keyframes of a moving camera at uniformly spaced times; positions relative to the
+                              ///< base placement
     int key_count;
 };
 
 /// True if the camera needs the code for LensKind::any, the kind of lenses of any shape.
-REALCAM_INLINE bool has_any_lens(const CameraView& camera) {
+REALCAM_INLINE bool needs_general_lens_code(const CameraView& camera) {
     return camera.pupil_grid.nodes || camera.lens.kind == LensKind::any;
 }
 
 /// Pose of the camera at a time, as a fraction of the exposure. The axes are interpolated linearly between two keys and
 /// re-orthonormalised.
-REALCAM_INLINE CameraPlacement camera_at(const CameraView& camera, float time) {
+REALCAM_INLINE CameraFrame camera_at(const CameraView& camera, float time) {
     if (camera.key_count == 0) return camera;
     const KeyInterval interval = key_interval(time, camera.key_count);
-    const CameraPlacement &a = camera.keys[interval.first], &b = camera.keys[interval.first + 1];
+    const CameraFrame &a = camera.keys[interval.first], &b = camera.keys[interval.first + 1];
     const Vec3f backward = normalized(mix(a.backward, b.backward, interval.share)),
                 right = mix(a.right, b.right, interval.share);
     const Vec3f unit_right = normalized(right - dot(right, backward) * backward);
@@ -120,12 +120,12 @@ REALCAM_INLINE CameraPlacement camera_at(const CameraView& camera, float time) {
 }
 
 /// Depth of a point of render space: its distance from the film along the camera's axis, metres.
-REALCAM_INLINE float depth_from(const CameraPlacement& camera, Vec3f point) {
+REALCAM_INLINE float depth_from(const CameraFrame& camera, Vec3f point) {
     return dot(camera.position - point, camera.backward);
 }
 
 /// Position of the lens's front vertex in render space, metres.
-REALCAM_INLINE Vec3f front_vertex(const CameraPlacement& camera, float front_vertex_m) {
+REALCAM_INLINE Vec3f front_vertex(const CameraFrame& camera, float front_vertex_m) {
     return camera.position - front_vertex_m * camera.backward;
 }
 

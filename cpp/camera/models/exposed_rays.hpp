@@ -20,7 +20,7 @@ template <int N>
 REALCAM_INLINE void move_rays(const CameraView& camera, const float (&times)[N], CameraRays<N>& rays) {
     if (camera.key_count == 0) return;
     for (int i = 0; i < N; ++i) {
-        const CameraPlacement moved = camera_at(camera, times[i]);
+        const CameraFrame moved = camera_at(camera, times[i]);
         const auto rotated = [&](Vec3f v) {
             return dot(v, camera.right) * moved.right + dot(v, camera.up) * moved.up +
                    dot(v, camera.backward) * moved.backward;

@@ -74,7 +74,7 @@ struct CameraRays {
 REALCAM_INLINE Vec2f film_point(const CameraView& camera, std::int32_t column, std::int32_t row, Vec2f offset) {
     const float x = quotient(2.0f * (static_cast<float>(column) + offset.x), static_cast<float>(camera.width)) - 1.0f;
     const float y = quotient(2.0f * (static_cast<float>(row) + offset.y), static_cast<float>(camera.height)) - 1.0f;
-    return {camera.film_middle.x - x * camera.film_half_width, camera.film_middle.y + y * camera.film_half_height};
+    return {camera.film_centre.x - x * camera.film_half_width, camera.film_centre.y + y * camera.film_half_height};
 }
 
 /// Ray that has left the lens, in the lens frame.

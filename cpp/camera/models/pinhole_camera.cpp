@@ -120,7 +120,7 @@ std::optional<PinholeCamera> pinhole_camera(const Camera& camera, const Pose& po
     return result;
 }
 
-Pose middle_pose(const Camera& camera) {
+Pose pose_at_mid_exposure(const Camera& camera) {
     const TimeInterval exposure = camera.exposure();
     return pose_at(camera, 0.5 * (exposure.begin_s + exposure.end_s));
 }

@@ -63,6 +63,6 @@ struct PinholeCamera {
 std::optional<PinholeCamera> pinhole_camera(const Camera& camera, const Pose& pose);
 
 /// Pose of the camera at the middle of its exposure.
-Pose middle_pose(const Camera& camera);
+Pose pose_at_mid_exposure(const Camera& camera);
 
 }  // namespace REALCAM_NAMESPACE

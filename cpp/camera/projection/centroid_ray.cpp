@@ -13,9 +13,9 @@ constexpr int kLanes = 12;  ///< Gauss nodes of a radial scan line, which the co
 using EntryLanes = Vec2<double>[kLanes];
 
 /// Calls work(entries, positions) for kLanes entries at a time: a pointer to the first of them, and their
-/// EntryPart::entry. The number of entries is a multiple of kLanes.
+/// QuadratureRay::entry. The number of entries is a multiple of kLanes.
 template <class Work>
-void in_lanes(const std::vector<EntryPart>& entries, Work&& work) {
+void in_lanes(const std::vector<QuadratureRay>& entries, Work&& work) {
     for (std::size_t first = 0; first + kLanes <= entries.size(); first += kLanes) {
         EntryLanes lanes;
         for (std::size_t i = 0; i < kLanes; ++i) lanes[i] = entries[first + i].entry;
@@ -77,14 +77,14 @@ std::optional<CentroidRay> CentroidRays::centroid_ray(const FilmBundle& bundle) 
 
 double CentroidRays::irradiance_of(const FilmBundle& bundle) {
     double area = 0;
-    for (const EntryPart& part : entry_parts(bundle, kSampling)) area += part.area;
+    for (const QuadratureRay& part : quadrature_rays(bundle, kSampling)) area += part.area;
     return area;
 }
 
 std::vector<CentroidRays::WeightedRay> CentroidRays::trace(const FilmBundle& bundle) {
     static_assert(kSampling.nodes % kLanes == 0);
     std::vector<WeightedRay> left;
-    in_lanes(entry_parts(bundle, kSampling), [&](const EntryPart* entries, const EntryLanes& lanes) {
+    in_lanes(quadrature_rays(bundle, kSampling), [&](const QuadratureRay* entries, const EntryLanes& lanes) {
         LensRays<double, kLanes> rays;
         bundle.trace(lanes, rays);
         for (int i = 0; i < kLanes; ++i)
@@ -112,7 +112,7 @@ Vec2<double> CentroidRays::centroid_on_film(const SceneRay& ray, const std::vect
     const SceneBundle bundle(to_film_, film_, ray, focus_, in, mirrored);
     Vec2<double> sum = {0, 0};
     double light = 0;
-    in_lanes(entry_parts(bundle, kSampling), [&](const EntryPart* entries, const EntryLanes& lanes) {
+    in_lanes(quadrature_rays(bundle, kSampling), [&](const QuadratureRay* entries, const EntryLanes& lanes) {
         Vec2<double> landings[kLanes];
         bundle.land(lanes, landings);
         for (int i = 0; i < kLanes; ++i) {

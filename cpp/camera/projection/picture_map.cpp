@@ -10,16 +10,16 @@ namespace realcam {
 PictureMap::PictureMap(const CameraView& camera)
     : pixels_per_mm_x_(0.5 * camera.width / static_cast<double>(camera.film_half_width)),
       pixels_per_mm_y_(0.5 * camera.height / static_cast<double>(camera.film_half_height)),
-      axis_{0.5 * camera.width + pixels_per_mm_x_ * static_cast<double>(camera.film_middle.x),
-            0.5 * camera.height - pixels_per_mm_y_ * static_cast<double>(camera.film_middle.y)} {
+      axis_{0.5 * camera.width + pixels_per_mm_x_ * static_cast<double>(camera.film_centre.x),
+            0.5 * camera.height - pixels_per_mm_y_ * static_cast<double>(camera.film_centre.y)} {
     // Auxiliary film behind the same lens: one row of pixels, with corners of the film at both ends.
     CameraView along = camera;
-    static_cast<CameraPlacement&>(along) = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    static_cast<CameraFrame&>(along) = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     along.keys = nullptr;
     along.key_count = 0;
-    const float corner = hypotenuse(camera.film_half_width + std::fabs(camera.film_middle.x),
-                                    camera.film_half_height + std::fabs(camera.film_middle.y));
-    along.film_middle = {0, 0};
+    const float corner = hypotenuse(camera.film_half_width + std::fabs(camera.film_centre.x),
+                                    camera.film_half_height + std::fabs(camera.film_centre.y));
+    along.film_centre = {0, 0};
     along.width = 2 * kRadii;
     along.height = 1;
     along.film_half_width = corner;

@@ -32,7 +32,7 @@ ProjectionGrid::ProjectionGrid(const CameraSetup& setup, ProjectionRay ray, cons
     film_z_ = camera_film_position(lens);
     const RaysFromFilm from_film(lens, lens.wavelength_nm);
     const ParabasalRays middle = parabasal_rays(lens, lens.wavelength_nm);
-    reference_ = entrance_pupil_middle(middle, from_film.scene_index());
+    reference_ = entrance_pupil_centre(middle, from_film.scene_index());
     constexpr double kFar = 1e6;  // mm
     if (!(length(reference_ - middle.chief.scene) < kFar)) reference_ = middle.chief.scene;
     const PupilGridView pupil = setup.pupil_grid()->view();

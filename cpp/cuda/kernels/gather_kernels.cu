@@ -23,7 +23,7 @@ void launch_gather_ghosts(const GhostJob& job, cudaStream_t stream) {
     constexpr LensKind round = LensKind::rotational, any = LensKind::any;
     auto* kernel =
         job.ghosts.effects.have_wavelengths() ? gather_ghosts_of<round, true> : gather_ghosts_of<round, false>;
-    if (has_any_lens(job.camera))
+    if (needs_general_lens_code(job.camera))
         kernel = job.ghosts.effects.have_wavelengths() ? gather_ghosts_of<any, true> : gather_ghosts_of<any, false>;
     kernel<<<job.block_count, kGhostBlock, 0, stream>>>(job);
     check_cuda(cudaGetLastError(), "starting to trace ghosts of objects");

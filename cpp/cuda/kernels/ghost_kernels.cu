@@ -28,7 +28,7 @@ void launch_splat_ghosts(const GhostJob& job, cudaStream_t stream) {
                                             : splat_ghosts_of<round, SceneKind::plain, false, false>)
                          : (has_wavelengths ? splat_ghosts_of<round, SceneKind::any, true, true>
                                             : splat_ghosts_of<round, SceneKind::any, true, false>);
-    if (has_any_lens(job.camera))
+    if (needs_general_lens_code(job.camera))
         kernel = has_wavelengths ? splat_ghosts_of<any, SceneKind::any, true, true>
                                  : splat_ghosts_of<any, SceneKind::any, true, false>;
     kernel<<<job.block_count, kGhostBlock, 0, stream>>>(job);

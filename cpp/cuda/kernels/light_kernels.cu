@@ -28,7 +28,7 @@ void launch_trace_lights(const GhostJob& job, cudaStream_t stream) {
                                             : trace_lights_of<round, SceneKind::plain, false, false>)
                          : (has_wavelengths ? trace_lights_of<round, SceneKind::any, true, true>
                                             : trace_lights_of<round, SceneKind::any, true, false>);
-    if (has_any_lens(job.camera))
+    if (needs_general_lens_code(job.camera))
         kernel = has_wavelengths ? trace_lights_of<any, SceneKind::any, true, true>
                                  : trace_lights_of<any, SceneKind::any, true, false>;
     kernel<<<job.block_count, kGhostBlock, 0, stream>>>(job);

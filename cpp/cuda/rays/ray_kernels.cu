@@ -8,7 +8,7 @@ namespace {
 
 template <class T>
 __global__ void __launch_bounds__(kBlockSize) trace(const __grid_constant__ TraceRequest<T> request) {
-    if (thread_index() < request.count) trace_rays_of<1>(request, thread_index());
+    if (thread_index() < request.count) trace_ray_block<1>(request, thread_index());
 }
 
 template <LensKind lens_kind>
@@ -36,7 +36,8 @@ void launch_trace(const TraceRequest<float>& request, cudaStream_t stream) {
 void launch_generate(const RayRequest& request, cudaStream_t stream) {
     if (request.count() == 0) return;
     // Spherical lenses use the kernel for rotationally symmetric ones: this is not worth a kernel of its own.
-    auto* const kernel = has_any_lens(request.camera) ? generate<LensKind::any> : generate<LensKind::rotational>;
+    auto* const kernel =
+        needs_general_lens_code(request.camera) ? generate<LensKind::any> : generate<LensKind::rotational>;
     kernel<<<blocks_for(request.count()), kBlockSize, 0, stream>>>(request);
     check_cuda(cudaGetLastError(), "starting to generate rays");
 }

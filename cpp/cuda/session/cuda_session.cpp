@@ -116,7 +116,7 @@ private:
                            std::atomic<std::int64_t>& done, OwnStop&) override {
         const auto exposing = std::chrono::steady_clock::now();
         const RenderCounts before = front().counts();
-        RegionSums sums{front().expose_region(region, range, settings_of(range), counts), {}};
+        RegionSums sums{front().sample_region(region, range, settings_of(range), counts), {}};
         set_stats(sums.stats, front().counts() - before, seconds_since(exposing));
         done += static_cast<std::int64_t>(region.pixels()) * range.count;
         return sums;

@@ -135,7 +135,7 @@ std::vector<SplatFilm> DeviceRenderer::trace_splats(const std::vector<SplatSourc
     return films_on_host;
 }
 
-FilmSums DeviceRenderer::expose_region(const FilmRegion& region, const SampleRange& range,
+FilmSums DeviceRenderer::sample_region(const FilmRegion& region, const SampleRange& range,
                                        const RenderSettings& settings, const PixelCounts& counts) {
     const CurrentDevice current(ordinal_);
     const FilmPart part{region.row, region.height, range.first, range.count};

@@ -43,7 +43,7 @@ public:
     /// Makes the pupil points that passed in all samples so far available to later samples (PixelPupils).
     void learn_pupils();
 
-    /// Sets the sources of splatted light for the following pictures, at most kMostSplats.
+    /// Sets the sources of splatted light for the following pictures, at most kMaxGhostViews.
     void set_splats(const std::vector<SplatSource>& sources);
     /// Allocates `films` empty films of width x height pixels for each source (GhostFilmView).
     void clear_splats(int width, int height, int films);
@@ -70,7 +70,7 @@ public:
 
     /// Renders the samples of a region into host memory, separately from the film. The order of summation is that of
     /// the whole film, whatever the region. `counts`: of the region's pixels.
-    FilmSums expose_region(const FilmRegion& region, const SampleRange& range, const RenderSettings& settings,
+    FilmSums sample_region(const FilmRegion& region, const SampleRange& range, const RenderSettings& settings,
                            const PixelCounts& counts);
 
     /// Adds samples to the film asynchronously, in one launch: for live frames.
@@ -150,10 +150,10 @@ private:
     DeviceScene scene_;
     DeviceArrays camera_arrays_;
     CameraView camera_{};
-    std::array<DeviceGhosts, kMostSplats> splats_;
+    std::array<DeviceGhosts, kMaxGhostViews> splats_;
     DeviceArray<PixelSum> sums_;  ///< the film
     DeviceArray<PixelSum> others_;  ///< copy of another GPU's film
-    DeviceArray<PixelSum> region_sums_;  ///< of expose_region
+    DeviceArray<PixelSum> region_sums_;  ///< of sample_region
     DeviceArray<std::uint32_t> sample_counts_;  ///< copy of PixelCounts::counts
     DeviceArray<PixelPupil> known_, found_;  ///< learned pupils, one for each pixel (PixelPupils)
     DeviceArray<LayerSum> layer_sums_;

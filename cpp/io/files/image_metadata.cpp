@@ -62,7 +62,7 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     metadata.film_shift_mm = camera.film.shift_mm;
     metadata.pixel_width_um = 1000 * camera.film.width_mm / camera.film.width;
     metadata.pixel_height_um = 1000 * camera.film.height_mm / camera.film.height;
-    metadata.pinhole = pinhole_camera(camera, middle_pose(camera));
+    metadata.pinhole = pinhole_camera(camera, pose_at_mid_exposure(camera));
     metadata.exposure_time_s = camera.exposure_time_s;
     metadata.shutter_opens_s = camera.shutter.opens_s;
     metadata.readout_time_s = camera.shutter.readout_time_s;
@@ -75,7 +75,7 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
         metadata.effects += (metadata.effects.empty() ? "" : ",") + name;
     if (const auto light = settings.spectral_light()) metadata.illuminant = light->text();
     if (settings.lens_filter) metadata.lens_filter = settings.lens_filter->text();
-    if (any_is(settings.effects, &EffectInfo::needs_coatings)) metadata.coatings = coating_summary(camera.lens);
+    if (any_active_has(settings.effects, &EffectInfo::needs_coatings)) metadata.coatings = coating_summary(camera.lens);
     return metadata;
 }
 

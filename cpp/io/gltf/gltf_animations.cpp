@@ -125,7 +125,7 @@ private:
         }
         for (const float time : accessors_.numbers(sampler["input"], "SCALAR", where + ": its input")) {
             const auto seconds = static_cast<double>(time);
-            if (!(std::fabs(seconds) <= kMostSeconds)) document_.fail(where + ": a time must lie within 1e9 s");
+            if (!(std::fabs(seconds) <= kMaxTime_s)) document_.fail(where + ": a time must lie within 1e9 s");
             if (!keys->times.empty() && !(keys->times.back() < seconds))
                 document_.fail(where + ": its times must be strictly increasing");
             keys->times.push_back(seconds);

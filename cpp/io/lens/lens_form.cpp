@@ -65,7 +65,7 @@ std::vector<XyTerm> read_xy(const TomlTable& surface) {
 /// Reads polynomial terms of one kind (see kFormTerms), if the surface has their key.
 template <class Terms>
 void read_terms(const TomlTable& surface, std::optional<Terms>& terms) {
-    constexpr FormWords words = Terms::words;
+    constexpr FormNames words = Terms::words;
     const auto table = surface.table(words.key);
     if (!table) return;
     terms.emplace();
@@ -171,7 +171,7 @@ SurfaceForm read_form(const TomlTable& table) {
     form.conic_x = table.number("conic_x").value_or(0);
     form.radial = read_radial(table);
     form.xy = read_xy(table);
-    over_rows(form, [&](auto& terms) { read_terms(table, terms); });
+    for_each_kind_of_terms(form, [&](auto& terms) { read_terms(table, terms); });
     return form;
 }
 
@@ -233,7 +233,7 @@ std::string offset(Vec2d v) {
 /// Polynomial terms of one kind (see kFormTerms) as an inline table.
 template <class Terms>
 std::string table_of(const Terms& terms) {
-    constexpr FormWords words = Terms::words;
+    constexpr FormNames words = Terms::words;
     std::string text = "{ ";
     if constexpr (requires { Terms::variant; })
         text += std::string(words.variant_key) + " = \"" +
@@ -272,7 +272,7 @@ std::string form_as_toml(const SurfaceForm& form) {
                          return '[' + std::to_string(term.x) + ", " + std::to_string(term.y) + ", " +
                                 toml_number(term.coefficient) + ']';
                      }));
-    over_terms(form, [&](const auto& terms) { lines += key(terms.words.key, table_of(terms)); });
+    for_each_present_terms(form, [&](const auto& terms) { lines += key(terms.words.key, table_of(terms)); });
     return lines;
 }
 

@@ -232,12 +232,12 @@ std::pair<std::string, Glass> named_glass(const std::string& text) {
     if (equals == text.npos || name.empty())
         throw InputError(in_quotes(text) + ": expected NAME=n_d,V_d or NAME=MAKER:GLASS");
     std::string_view rest = std::string_view(text).substr(equals + 1);
-    const std::optional<double> n_d = take_number(rest);
+    const std::optional<double> n_d = consume_number(rest);
     if (!n_d) return {name, catalogue_glass(std::string(rest))};
     double v_d = 0;
     if (rest.starts_with(',')) {
         rest.remove_prefix(1);
-        const std::optional<double> value = take_number(rest);
+        const std::optional<double> value = consume_number(rest);
         if (!value || !(*value > 0)) rest = "?";
         v_d = value.value_or(0);
     }

@@ -10,7 +10,7 @@ namespace {
 
 /// Returns the placement of a frame. Rounding errors that remain where coordinate breaks cancel are set to 0.
 SurfacePlacement placement_of(const Affine<double>& frame) {
-    SurfacePlacement placement = SurfacePlacement::of(frame);
+    SurfacePlacement placement = SurfacePlacement::from_frame(frame);
     constexpr double kRounding = 1e-12;
     for (Vec3d* vector : {&placement.decentre, &placement.tilt_deg})
         for (double* value : {&vector->x, &vector->y, &vector->z})

@@ -105,7 +105,7 @@ std::string set_aspheric_terms(const PrescriptionSurface& row, double height, Su
         }
     }
     if (square == 0) return unsupported;
-    if (!is_toroid && !surface.form.is_none()) {
+    if (!is_toroid && !surface.form.adds_nothing()) {
         add_radial(2, square);
         return unsupported;
     }

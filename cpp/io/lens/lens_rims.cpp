@@ -99,7 +99,7 @@ private:
         double at[3], out[3], length;
         int status, surface;
         const auto passes = [&](const TracePath<double>& path) {
-            trace_rays_of<1>(path.request(1, origin, direction, {at, out, &length, &status, &surface}), 0);
+            trace_ray_block<1>(path.request(1, origin, direction, {at, out, &length, &status, &surface}), 0);
             return status == 0;
         };
         if (whole_lens_path_ && !passes(*whole_lens_path_)) return;

@@ -100,7 +100,7 @@ std::vector<LensWord> LensLines::words(std::string_view line) const {
 
 double LensLines::number_of(std::string_view word, const std::string& what) const {
     std::string_view rest = word;
-    const std::optional<double> value = take_number(rest);
+    const std::optional<double> value = consume_number(rest);
     if (!value || !rest.empty() || !std::isfinite(*value))
         fail(what + " must be a finite number; it is " + in_quotes(word));
     return *value;
@@ -108,7 +108,7 @@ double LensLines::number_of(std::string_view word, const std::string& what) cons
 
 int LensLines::whole_number_of(std::string_view word, const std::string& what, int min, int max) const {
     std::string_view rest = word;
-    const std::optional<std::int64_t> value = take_integer(rest);
+    const std::optional<std::int64_t> value = consume_integer(rest);
     if (!value || !rest.empty() || *value < min || *value > max)
         fail(what + " must be a whole number from " + std::to_string(min) + " to " + std::to_string(max) + "; it is " +
              in_quotes(word));

@@ -85,7 +85,7 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
                                            "decentre_mm",
                                            "tilt_deg",
                                            "returns"};
-        for (const FormWords& words : kFormWords) keys.push_back(words.key);
+        for (const FormNames& words : kFormNames) keys.push_back(words.key);
         table.allow(keys);
     } else {
         table.allow({"type", "thickness_mm", "clear_semi_diameter_mm", "inner_semi_diameter_mm", "decentre_mm",

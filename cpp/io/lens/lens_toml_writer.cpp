@@ -122,10 +122,10 @@ private:
             if (index >= 1 && plain == glass) return toml_number(index);
         }
         std::string_view rest = glass.label;
-        const auto n_d = take_number(rest);
+        const auto n_d = consume_number(rest);
         if (n_d && rest.starts_with(" / ")) {
             rest.remove_prefix(3);
-            const auto v_d = take_number(rest);
+            const auto v_d = consume_number(rest);
             if (v_d && *n_d >= 1 && *v_d > 0 && std::isfinite(*n_d) && std::isfinite(*v_d)) {
                 Glass pair = Glass::from_abbe_number(*n_d, *v_d);
                 pair.label = number_label(*n_d) + " / " + number_label(*v_d);

@@ -87,8 +87,8 @@ auto find_key(const Keys& keys, std::string_view name) -> decltype(&keys[0]) {
 
 /// Removes a word from the beginning of `text` and returns it as a number; std::nullopt if the word is not a number.
 std::optional<double> take_number_word(std::string_view& text) {
-    std::string_view word = take_word(text);
-    const std::optional<double> value = take_number(word);
+    std::string_view word = consume_word(text);
+    const std::optional<double> value = consume_number(word);
     return word.empty() ? value : std::nullopt;
 }
 
@@ -155,7 +155,7 @@ private:
     /// Reads a line, without blanks around it. Unknown statements are collected for one warning.
     void read_statement(std::string_view line) {
         std::string_view arguments = line;
-        const std::string_view keyword = take_word(arguments);
+        const std::string_view keyword = consume_word(arguments);
         if (equal_without_case(keyword, "newmtl")) return begin_material(arguments);
         const ColourKey* colour = find_key(kColours, keyword);
         const NumberKey* number = find_key(kNumbers, keyword);
@@ -243,7 +243,7 @@ private:
     /// the format's definition, and an opacity as MeshLab and others write it (see resolve_transparencies).
     void read_dissolve(bool is_d, std::string_view keyword, std::string_view arguments) {
         if (arguments.starts_with("-halo")) {
-            take_word(arguments);
+            consume_word(arguments);
             not_modelled_.insert("d -halo");
         }
         const std::size_t out_of_range = out_of_range_.count;

@@ -76,7 +76,7 @@ private:
     /// Parses a line. Unsupported statements, such as curves, are ignored.
     void parse_statement(std::string_view line) {
         std::string_view arguments = line;
-        const std::string_view keyword = take_word(arguments);
+        const std::string_view keyword = consume_word(arguments);
         if (keyword == "v")
             parse_position(without_comment(arguments));
         else if (keyword == "vt")
@@ -100,9 +100,9 @@ private:
         std::size_t count = 0;
         while (count < numbers.size() && !text.empty()) {
             std::string_view word = text;
-            const std::optional<double> value = take_number(text);
+            const std::optional<double> value = consume_number(text);
             if (!value || !(text.empty() || text[0] == ' ' || text[0] == '\t'))
-                fail("expected a number, not " + in_quotes(take_word(word)));
+                fail("expected a number, not " + in_quotes(consume_word(word)));
             numbers[count++] = *value;
             text = trimmed(text);
         }
@@ -130,9 +130,9 @@ private:
     /// keyword alone to switch smoothing on.
     void parse_smoothing(std::string_view argument) {
         out_.has_smoothing = true;
-        const std::string_view word = take_word(argument);
+        const std::string_view word = consume_word(argument);
         std::string_view number = word;
-        const std::optional<std::int64_t> group = take_integer(number);
+        const std::optional<std::int64_t> group = consume_integer(number);
         constexpr std::int64_t kMaxGroup = 0xfffffffe;  // kSmoothByAngle is the next number
         if (word == "off")
             smoothing_ = 0;
@@ -176,13 +176,13 @@ private:
         const std::string_view start = text;
         const auto fail_form = [&] {
             std::string_view word = start;
-            fail("a corner is v, v/vt, v//vn or v/vt/vn, not " + in_quotes(take_word(word)));
+            fail("a corner is v, v/vt, v//vn or v/vt/vn, not " + in_quotes(consume_word(word)));
         };
         std::array<std::optional<std::int64_t>, 3> numbers;
         for (std::size_t i = 0; i < 3; ++i) {
             const bool may_be_absent = i == 1 && text.starts_with('/');
             if (!may_be_absent) {
-                numbers[i] = take_integer(text);
+                numbers[i] = consume_integer(text);
                 if (!numbers[i]) fail_form();
             }
             if (!text.starts_with('/')) break;

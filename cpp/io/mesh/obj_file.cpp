@@ -98,7 +98,7 @@ private:
                 continue;
             }
             std::string_view names = line;
-            while (!names.empty()) read_library(std::string(take_word(names)), read);
+            while (!names.empty()) read_library(std::string(consume_word(names)), read);
         }
     }
 

@@ -87,7 +87,7 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
             PlyElement& element = header.elements.emplace_back();
             words >> element.name >> argument;
             std::string_view number = argument;
-            const std::optional<std::int64_t> count = take_integer(number);
+            const std::optional<std::int64_t> count = consume_integer(number);
             if (!count || !number.empty() || *count < 0)
                 fail("expected \"element\", a name and a number of at least 0");
             element.count = static_cast<std::uint64_t>(*count);
@@ -136,7 +136,7 @@ std::optional<double> PlyData::next_ascii() {
         if (begin_ == end_ && file_.left() > 0) read_more();
     }
     std::string_view text{buffer_.data() + begin_, end_ - begin_};
-    const std::optional<double> value = take_number(text);
+    const std::optional<double> value = consume_number(text);
     if (value) begin_ = end_ - text.size();
     return value;
 }

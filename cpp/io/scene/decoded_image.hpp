@@ -39,7 +39,7 @@ struct DecodedImage {
 
 /// Limit of the size of textures: 16384 x 16384 pixels, the largest texture of a GPU. A file of a megabyte can claim
 /// 40000 x 40000.
-inline constexpr std::size_t kMostTexturePixels = std::size_t{1} << 28;
+inline constexpr std::size_t kMaxTexturePixels = std::size_t{1} << 28;
 
 /// Function that decodes one picture, from the file `path`, or, if `path` is empty, from the bytes of a PNG or JPEG
 /// that is embedded in the scene file. If it throws Error or returns std::nullopt, the scene gets a checker pattern

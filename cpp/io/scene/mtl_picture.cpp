@@ -29,7 +29,7 @@ const Option* find_option(std::string_view name) {
 
 /// Parses a word that must be a number as a whole.
 std::optional<double> number_of(std::string_view word) {
-    const std::optional<double> number = take_number(word);
+    const std::optional<double> number = consume_number(word);
     return word.empty() ? number : std::nullopt;
 }
 
@@ -38,7 +38,7 @@ std::vector<std::string_view> take_arguments(std::string_view& text, const Optio
     std::vector<std::string_view> arguments;
     while (arguments.size() < option.max_arguments) {
         std::string_view after_word = text;
-        const std::string_view word = take_word(after_word);
+        const std::string_view word = consume_word(after_word);
         if (!arguments.empty() && !number_of(word)) break;
         arguments.push_back(word);
         text = after_word;
@@ -53,7 +53,7 @@ public:
     std::optional<MtlPicture> parse(std::string_view text) {
         while (text.starts_with('-')) {
             std::string_view after_option = text;
-            const Option* option = find_option(take_word(after_option));
+            const Option* option = find_option(consume_word(after_option));
             if (!option) break;  // a file name may begin with - as well
             if (!apply(*option, take_arguments(after_option, *option))) return std::nullopt;
             text = after_option;

@@ -26,7 +26,7 @@ bool has_normal(Vec3f n) {
 /// Implementation of read_geometry.
 class Flattener {
 public:
-    Flattener(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out)
+    Flattener(Scene& scene, const ScenePart& part, const LeftOutFunction& leaves_out)
         : scene_(scene), part_(part), file_(part.file), leaves_out_(leaves_out) {
         for (const FileMesh& mesh : file_.meshes) {
             any_normals_ |= !vertices_of(mesh).normals.empty();
@@ -170,7 +170,7 @@ private:
     Scene& scene_;
     const ScenePart& part_;
     const FileScene& file_;
-    const LeavesOut& leaves_out_;
+    const LeftOutFunction& leaves_out_;
     bool left_out_ = false;  // anything was left out
     bool any_normals_ = false, any_uvs_ = false, any_second_uvs_ = false, any_colours_ = false,
          any_position_ids_ = false;
@@ -181,7 +181,7 @@ private:
 
 }  // namespace
 
-void read_geometry(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out) {
+void read_geometry(Scene& scene, const ScenePart& part, const LeftOutFunction& leaves_out) {
     Flattener(scene, part, leaves_out).flatten();
 }
 
@@ -214,7 +214,7 @@ void add_light(Scene& scene, const FileLight& light, const Affine<double>& trans
 
 }  // namespace
 
-void read_lights(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out) {
+void read_lights(Scene& scene, const ScenePart& part, const LeftOutFunction& leaves_out) {
     const FileScene& file = part.file;
     if (file.lights.empty()) return;
     visit_nodes(part, [&](std::uint32_t index, const Affine<double>& transform) {

@@ -5,12 +5,12 @@
 namespace realcam::io {
 
 /// Adds the punctual lights of the nodes of a part, with intensities in cd and illuminances in lux. Only glTF files
-/// have lights. `leaves_out`: see LeavesOut.
-void read_lights(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out);
+/// have lights. `leaves_out`: see LeftOutFunction.
+void read_lights(Scene& scene, const ScenePart& part, const LeftOutFunction& leaves_out);
 
 /// Flattens the nodes of a part into scene.positions_m, normals, uvs and triangles. Material indices are those of the
 /// file. Throws SceneFileError if no triangle remains, unless `leaves_out` excluded some, if a vertex is too far away,
 /// or if there is too little memory.
-void read_geometry(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out);
+void read_geometry(Scene& scene, const ScenePart& part, const LeftOutFunction& leaves_out);
 
 }  // namespace realcam::io

@@ -10,7 +10,7 @@
 namespace realcam::io {
 namespace {
 
-const LeavesOut kLeavesOutNothing = [](std::uint32_t, const Affine<double>&) { return LeftOut::nothing; };
+const LeftOutFunction kLeavesOutNothing = [](std::uint32_t, const Affine<double>&) { return LeftOut::nothing; };
 
 /// True if a node or one of its descendants has meshes.
 bool has_triangles(const FileScene& file, std::uint32_t node) {
@@ -63,10 +63,10 @@ LeftOut SceneObjects::left_out(std::uint32_t node, const Affine<double>& transfo
 
 void SceneObjects::add(std::uint32_t node, const Affine<double>& transform, Scene& static_geometry) {
     if (left_out(node, transform) == LeftOut::all)
-        return add_node(node, transform, Instance::kNoWhole, static_geometry);
+        return add_node(node, transform, Instance::kNoParentInstance, static_geometry);
     std::shared_ptr<Scene>& shared = shared_scenes_[meshes_of(node)];
     if (!shared) shared = read_meshes(node);
-    add_scene(shared, node, transform, Instance::kNoWhole, static_geometry);
+    add_scene(shared, node, transform, Instance::kNoParentInstance, static_geometry);
 }
 
 void SceneObjects::add_node(std::uint32_t node, const Affine<double>& transform, std::ptrdiff_t part_of,
@@ -74,7 +74,7 @@ void SceneObjects::add_node(std::uint32_t node, const Affine<double>& transform,
     const std::ptrdiff_t next_instance = std::ssize(instances_);
     const bool is_named = names_.contains(file_.nodes[node].name);
     // Descendants that become instances of their own.
-    const LeavesOut parts = [&](std::uint32_t index, const Affine<double>&) {
+    const LeftOutFunction parts = [&](std::uint32_t index, const Affine<double>&) {
         const bool is_part = moves(index) || (!is_named && names_.contains(file_.nodes[index].name));
         return index != node && is_part ? LeftOut::all : LeftOut::nothing;
     };
@@ -135,7 +135,7 @@ AnimatedTransform SceneObjects::placement(std::uint32_t node, const Affine<doubl
         scaled.origin = scale_ * scaled.origin;
         return scaled;
     }
-    times = sorted_once(std::move(times));
+    times = sorted_unique(std::move(times));
     Motion keys;
     for (const double time : times) {
         keys.times_s.push_back(time);
@@ -147,7 +147,7 @@ AnimatedTransform SceneObjects::placement(std::uint32_t node, const Affine<doubl
 }
 
 std::shared_ptr<Scene> SceneObjects::read_object(std::uint32_t node, const Affine<double>& transform,
-                                                 const LeavesOut& leaves_out, Scene& static_geometry) const {
+                                                 const LeftOutFunction& leaves_out, Scene& static_geometry) const {
     auto scene = std::make_shared<Scene>();
     const std::uint32_t end = file_.nodes[node].end;
     const ScenePart part{file_, scale_, node, end, Affine<double>(), checkpoint_};

@@ -20,7 +20,7 @@ public:
     /// object. Throws SceneFileError for a name that no node has.
     SceneObjects(const FileScene& file, double scale, const std::vector<std::string>& names, Checkpoint& checkpoint);
 
-    /// Returns what of a node does not belong to the static geometry (LeavesOut).
+    /// Returns what of a node does not belong to the static geometry (LeftOutFunction).
     LeftOut left_out(std::uint32_t node, const Affine<double>& transform) const;
 
     /// Adds the instance of a node for which left_out() is not `nothing`. Warnings and suns go to `static_geometry`.
@@ -46,8 +46,8 @@ private:
                    std::ptrdiff_t part_of, Scene& static_geometry);
     /// Reads a node with those of its descendants that `leaves_out` includes, in the node's frame. Suns go to
     /// `static_geometry`.
-    std::shared_ptr<Scene> read_object(std::uint32_t node, const Affine<double>& transform, const LeavesOut& leaves_out,
-                                       Scene& static_geometry) const;
+    std::shared_ptr<Scene> read_object(std::uint32_t node, const Affine<double>& transform,
+                                       const LeftOutFunction& leaves_out, Scene& static_geometry) const;
     /// True if a node moves within its parent and has visible content.
     bool moves(std::uint32_t node) const { return file_.nodes[node].motion >= 0 && shows_[node]; }
     /// Returns the transform of a node to the scene, in metres, at a time in seconds.

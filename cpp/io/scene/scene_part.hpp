@@ -22,7 +22,7 @@ struct ScenePart {
 /// Part of a node that is left out: nothing, its meshes, or the node with all its descendants.
 enum class LeftOut { nothing, meshes, all };
 /// Function that decides what of a node is left out. `transform`: from the node to the scene, in units of the file.
-using LeavesOut = std::function<LeftOut(std::uint32_t node, const Affine<double>& transform)>;
+using LeftOutFunction = std::function<LeftOut(std::uint32_t node, const Affine<double>& transform)>;
 
 /// Calls `visit(node, transform)` for the nodes of a part, parents before children; if it returns false, the
 /// descendants are skipped. `node`: index; `transform`: from the node to the scene, in units of the file.

@@ -79,7 +79,7 @@ private:
         // JSON has neither "+1" nor "nan", which other formats have.
         const std::size_t first = rest.starts_with('-') ? 1 : 0;
         const bool is_number = first < rest.size() && rest[first] >= '0' && rest[first] <= '9';
-        const std::optional<double> value = is_number ? take_number(rest) : std::nullopt;
+        const std::optional<double> value = is_number ? consume_number(rest) : std::nullopt;
         if (!value) fail("a value");
         position_ = text_.size() - rest.size();
         return *value;

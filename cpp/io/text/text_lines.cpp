@@ -94,7 +94,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-std::string_view take_word(std::string_view& line) {
+std::string_view consume_word(std::string_view& line) {
     std::size_t begin = 0;
     while (begin < line.size() && is_blank(line[begin])) ++begin;
     std::size_t end = begin;

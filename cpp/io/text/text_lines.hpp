@@ -42,7 +42,7 @@ private:
 };
 
 /// Removes the first word of a line, with the blanks around it, and returns the word; empty at the end of the line.
-std::string_view take_word(std::string_view& line);
+std::string_view consume_word(std::string_view& line);
 
 /// Returns a text without the blanks (spaces, tabs) at its ends.
 std::string_view trimmed(std::string_view text);

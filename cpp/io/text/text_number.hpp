@@ -23,7 +23,7 @@ std::optional<std::vector<double>> numbers_in(const std::string& text, char sepa
 /// leading
 /// "+". Returns std::nullopt, and leaves the text unchanged, if there is no number. Numbers too large for a double
 /// become infinite, and those too small become 0.
-inline std::optional<double> take_number(std::string_view& text) {
+inline std::optional<double> consume_number(std::string_view& text) {
     std::string_view rest = text;
     if (rest.starts_with('+') && !rest.substr(1).starts_with('-')) rest.remove_prefix(1);
     double value = 0;
@@ -46,9 +46,9 @@ inline std::optional<double> take_number(std::string_view& text) {
     return value;
 }
 
-/// Parses a whole number at the beginning of a text, as take_number does. Numbers beyond 64 bits become the largest or
-/// the least std::int64_t.
-inline std::optional<std::int64_t> take_integer(std::string_view& text) {
+/// Parses a whole number at the beginning of a text, as consume_number does. Numbers beyond 64 bits become the largest
+/// or the least std::int64_t.
+inline std::optional<std::int64_t> consume_integer(std::string_view& text) {
     std::string_view rest = text;
     if (rest.starts_with('+') && !rest.substr(1).starts_with('-')) rest.remove_prefix(1);
     std::int64_t value = 0;

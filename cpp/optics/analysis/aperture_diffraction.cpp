@@ -24,7 +24,7 @@ Point operator-(Point a, Point b) {
 }
 
 /// Width of the fine rings of diffraction_cells.hpp, in double precision.
-constexpr double kFineStep = static_cast<double>(kDiffractionReach) / kDiffractionFineRings;
+constexpr double kFineStep = static_cast<double>(kDiffractionMaxFrequency) / kDiffractionFineRings;
 
 }  // namespace
 
@@ -177,7 +177,8 @@ ApertureDiffraction diffraction_of(const PupilEdges& edges) {
         area += 0.5 * cross(side.from, side.to);
         perimeter += side.length();
     }
-    result.edge_share = std::min(perimeter / (2 * kPi * kPi * area * static_cast<double>(kDiffractionReach)), 1.0);
+    result.edge_share =
+        std::min(perimeter / (2 * kPi * kPi * area * static_cast<double>(kDiffractionMaxFrequency)), 1.0);
 
     // Opposite frequencies have the same power.
     result.cells.assign(kDiffractionCells, 0.0);

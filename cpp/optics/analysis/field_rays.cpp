@@ -20,7 +20,7 @@ FieldRays field_rays(const LensSystem& lens, double wavelength_nm, const FieldPo
         const Vec3d at_film = result.on_film(result.chief, lens.film_distance);
         result.exit_pupil_distance = exit_pupil_distance(lens, wavelength_nm, {at_film.x, at_film.y});
     }
-    result.rays = aim_all(aim, result.pattern, stop_reach(lens), loop);
+    result.rays = aim_all(aim, result.pattern, stop_bounding_radius(lens), loop);
     if (std::none_of(result.rays.begin(), result.rays.end(),
                      [](const AimedRay& ray) { return ray.status == RayStatus::ok; }))
         throw InputError("none of " + std::to_string(result.rays.size()) + " rays " + where + " passes lens \"" +

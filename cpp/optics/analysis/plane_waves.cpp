@@ -54,7 +54,7 @@ std::optional<LocalWave> local_wave(const PointBundle& bundle, PointBundle::Entr
 }
 
 PlaneWaves plane_waves(const PointBundle& bundle, BundleSampling sampling, const RayLoop& loop) {
-    const std::vector<EntryPart> parts = entry_parts(bundle, sampling, loop);
+    const std::vector<QuadratureRay> parts = quadrature_rays(bundle, sampling, loop);
     PlaneWaves light{{}, 0, bundle.mirrored};
     loop.append_all(light.waves, parts.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
@@ -64,7 +64,7 @@ PlaneWaves plane_waves(const PointBundle& bundle, BundleSampling sampling, const
             light.waves[i] = {local->wave.slope, local->wave.path, parts[i].area * amplitude};
         }
     });
-    for (const EntryPart& part : parts) light.energy += bundle.energy(part.entry) * part.area;
+    for (const QuadratureRay& part : parts) light.energy += bundle.energy(part.entry) * part.area;
     return light;
 }
 

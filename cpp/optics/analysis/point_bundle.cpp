@@ -218,7 +218,7 @@ double close_focus(const PointBundle& bundle, bool tangential) {
 
 TracedBundle traced_bundle(const PointBundle& bundle, BundleSampling sampling, const RayLoop& loop) {
     const std::vector<QuadratureArm> arms = quadrature_arms(bundle, sampling.arms, loop);
-    const std::vector<EntryPart> parts = entry_parts(bundle, arms, sampling.nodes);
+    const std::vector<QuadratureRay> parts = quadrature_rays(bundle, arms, sampling.nodes);
     TracedBundle result{{}, edge_segments(bundle, arms), close_focus(bundle, true), close_focus(bundle, false)};
     loop.append_all(result.rays, parts.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {

@@ -151,8 +151,8 @@ struct TracedBundle {
         sagittal_focus;  ///< foci of rays close to the chief ray, mm behind the film plane; NaN if there is none
 };
 
-/// Traces the rays of a quadrature over a bundle (entry_parts). For a mirrored bundle, the second half of the result's
-/// rays are the mirror images of the first half.
+/// Traces the rays of a quadrature over a bundle (quadrature_rays). For a mirrored bundle, the second half of the
+/// result's rays are the mirror images of the first half.
 TracedBundle traced_bundle(const PointBundle& bundle, BundleSampling sampling, const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

@@ -71,8 +71,8 @@ void add_rays(const ColourPart& part, Psf& psf, std::int64_t rays, const RayLoop
     const double rays_needed = 16 * points_across(part.bundle.spot.x) * points_across(part.bundle.spot.y);
     const double count = rays ? static_cast<double>(rays) : std::clamp(rays_needed, 0x1p16, 0x1p22);
     const double arms = 2 * std::sqrt(count);
-    const std::vector<EntryPart> parts =
-        entry_parts(part.bundle, {static_cast<int>(std::ceil(arms)), static_cast<int>(std::ceil(arms / 4))}, loop);
+    const std::vector<QuadratureRay> parts =
+        quadrature_rays(part.bundle, {static_cast<int>(std::ceil(arms)), static_cast<int>(std::ceil(arms / 4))}, loop);
     std::vector<Vec2<double>> points;
     loop.append_all(points, parts.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {

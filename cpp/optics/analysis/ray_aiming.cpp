@@ -19,7 +19,7 @@ RayAimer::RayAimer(const LensSystem& lens, double wavelength_nm, const FieldPoin
       stop_(lens.stop_index()),
       open_(AimingPath::open(path_)),
       real_(AimingPath::real(path_)),
-      stop_bounding_radius_(stop_reach(lens)),
+      stop_bounding_radius_(stop_bounding_radius(lens)),
       stop_radius_(lens.open_stop_radius()) {
     const FirstOrder data = first_order(lens, wavelength_nm);
     step_ = 1e-6 * data.entrance_pupil_diameter;

@@ -30,7 +30,7 @@ struct ParaxialPair {
 /// Returns the marginal and the chief ray of a field point. Throws InputError for what seidel() refuses.
 ParaxialPair entering_rays(const LensSystem& lens, double wavelength_nm, const FieldPoint& field) {
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
-        if (!lens.surfaces[i].form.is_none())
+        if (!lens.surfaces[i].form.adds_nothing())
             throw InputError("third-order sums require conics and even aspheres; surface " + std::to_string(i + 1) +
                              " has other terms");
     const FirstOrder data = first_order(lens, wavelength_nm);

@@ -44,7 +44,7 @@ BundleTransmission bundle_transmission(const LensSystem& lens, double wavelength
 
 double axial_transmittance(const LensSystem& lens, double wavelength_nm) {
     check_wavelength_in_glasses(lens, wavelength_nm, "transmission");
-    return AxialShares(lens, wavelength_nm)(crossings_of(lens));
+    return AxialTransmittance(lens, wavelength_nm)(crossings_of(lens));
 }
 
 double unobstructed_share(LensSystem lens, double wavelength_nm) {

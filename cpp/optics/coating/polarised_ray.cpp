@@ -30,7 +30,7 @@ RayTransmittance PolarisedTrace::operator()(Vec3d origin, Vec3d direction) const
         if (view.free.frames && view.free.frames[i].before.changes)
             change_to_frame(view.free.frames[i].before, ray, fields);
         const Vec3d before = normalized(ray.direction[0]);
-        FreeParts<double> free = view.free.from(static_cast<int>(i));
+        AsymmetricParts<double> free = view.free.from(static_cast<int>(i));
         free.frames = nullptr;  // the frame change would also leave the surface's frame
         trace_lens(LensView<double>{&surface, 1, view.kind, view.iris, free}, ray, PathRecord<double, 1>{});
         if (ray.status[0] != 0 || !surfaces_[i]) continue;

@@ -121,7 +121,7 @@ __attribute__((flatten)) REALCAM_CLONES void AdjointPath::add_block(const Adjoin
         path_to_entry[i] = entry.optical_path;
     }
     steps[0].origin = rays.origin, steps[0].direction = rays.direction;
-    const FreeParts<double> free{data(path_.frames_), data(path_.freeforms_), data(path_.apertures_)};
+    const AsymmetricParts<double> free{data(path_.frames_), data(path_.freeforms_), data(path_.apertures_)};
     LensView<double> one_surface{nullptr, 1, path_.kind_, path_.iris_};
     for (std::size_t k = 0; k < count; ++k) {
         one_surface.surfaces = &path_.views_[k];

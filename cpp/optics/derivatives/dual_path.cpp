@@ -172,7 +172,7 @@ RayStatus DualPath::trace(Vec3d origin, Vec3d direction, Tape& tape, int surface
     tape.start_direction_ = direction;
     tape.steps_.resize(views_.size());
     const auto data = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
-    const FreeParts<double> free{data(frames_), data(freeforms_), data(apertures_)};
+    const AsymmetricParts<double> free{data(frames_), data(freeforms_), data(apertures_)};
     const std::size_t count = surfaces < 0 ? views_.size() : static_cast<std::size_t>(surfaces);
     for (std::size_t k = 0; k < count; ++k) {
         const Vec3d o = ray.origin[0], p = ray.direction[0];

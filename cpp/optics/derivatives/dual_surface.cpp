@@ -126,7 +126,7 @@ bool seed(ShapeNumbers<Dual8>& numbers, const LensVariable& variable, int lane) 
         case LensQuantity::xy: xy().by[lane] = 1; return true;
         case LensQuantity::terms: {
             const auto row = static_cast<std::size_t>(variable.row);
-            at(numbers.terms[row], variable.number - kFormWords[row].first_number).by[lane] = 1;
+            at(numbers.terms[row], variable.number - kFormNames[row].first_number).by[lane] = 1;
             return true;
         }
         default: return false;

@@ -24,10 +24,10 @@ void check_number(const LensVariable& v, int first, int last, const std::string&
 void check_terms(const LensVariable& v, const SurfaceForm& form) {
     if (v.row < 0 || v.row >= static_cast<int>(kFormTermsCount))
         fail(v.surface, "has no terms of row " + std::to_string(v.row) + " of the table of forms");
-    const FormWords& words = kFormWords[static_cast<std::size_t>(v.row)];
+    const FormNames& words = kFormNames[static_cast<std::size_t>(v.row)];
     const std::string name = words.name;
     int row = 0;
-    over_rows(form, [&](const auto& terms) {
+    for_each_kind_of_terms(form, [&](const auto& terms) {
         if (row++ != v.row) return;
         if (!terms) fail(v.surface, "has no " + name + " terms");
         const int count = static_cast<int>(terms->coefficients.size());
@@ -46,11 +46,11 @@ void check_form(const LensVariable& v, const SurfaceForm& form) {
             if (form.curvature_x == 0) fail(v.surface, "is straight along x: its conic there has no effect");
             break;
         case LensQuantity::radial:
-            if (form.is_none()) fail(v.surface, "has no terms of r");
+            if (form.adds_nothing()) fail(v.surface, "has no terms of r");
             check_number(v, 1, kMaxRadialTerms, "has terms of r");
             break;
         case LensQuantity::xy:
-            if (form.is_none()) fail(v.surface, "has no terms of x and y");
+            if (form.adds_nothing()) fail(v.surface, "has no terms of x and y");
             if (v.number < 0 || v.number_y < 0 || v.number + v.number_y < 1 || v.number + v.number_y > kMaxXyDegree)
                 fail(v.surface, "has terms of x and y up to the degree " + std::to_string(kMaxXyDegree));
             break;

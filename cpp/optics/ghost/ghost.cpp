@@ -20,7 +20,7 @@ GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pai
     ParaxialRay rays[] = {{1, 0}, {0, 1}};
     double direction_sign = 1;  // sign of the light's direction along z
     double last_z = 0;              // z of the last vertex crossed
-    std::vector<GhostPath::Meeting> meetings;
+    std::vector<GhostPath::SurfaceHeights> surface_heights;
     for (const Crossing& crossing : crossings_of(lens, pair)) {
         const double z_here = z[static_cast<std::size_t>(crossing.surface)];
         const double before = direction_sign * crossing.index_before(n);
@@ -31,10 +31,11 @@ GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pai
             ray.height += (z_here - last_z) * ray.slope;
             ray = refract_paraxial(ray, surface(crossing.surface).vertex_curvature(), before, behind);
         }
-        if (!is_film(lens, crossing.surface)) meetings.push_back({crossing.surface, rays[0].height, rays[1].height});
+        if (!is_film(lens, crossing.surface))
+            surface_heights.push_back({crossing.surface, rays[0].height, rays[1].height});
         last_z = z_here;
     }
-    return {-1 / rays[0].slope, -rays[0].height / rays[0].slope, rays[0], rays[1], meetings};
+    return {-1 / rays[0].slope, -rays[0].height / rays[0].slope, rays[0], rays[1], surface_heights};
 }
 
 LensSystem with_film_mirror(LensSystem lens, double reflectance, double radius) {

@@ -20,11 +20,11 @@ struct GhostPath {
     double back_focal_distance;
     ParaxialRay of_height, of_slope;  ///< the two basis rays at the last vertex, behind the lens
     /// A surface on the path, with the heights of the two basis rays there.
-    struct Meeting {
+    struct SurfaceHeights {
         int surface;  ///< index, from 0
         double of_height, of_slope;  ///< heights, mm
     };
-    std::vector<Meeting> meetings;  ///< in the order of the light, without the film
+    std::vector<SurfaceHeights> surface_heights;  ///< in the order of the light, without the film
 };
 
 /// Returns the first-order data of the ghost that a pair of surfaces causes. `pair`: indices of the surfaces that

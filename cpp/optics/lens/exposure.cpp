@@ -75,7 +75,7 @@ double axis_irradiance(LensSystem lens) {
     return std::numbers::pi * squares;
 }
 
-AxialShares::AxialShares(const LensSystem& lens, double wavelength_nm) {
+AxialTransmittance::AxialTransmittance(const LensSystem& lens, double wavelength_nm) {
     const std::vector<double> indices = lens.indices(wavelength_nm);
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
         std::array<Face, 2> faces;
@@ -91,7 +91,7 @@ AxialShares::AxialShares(const LensSystem& lens, double wavelength_nm) {
     }
 }
 
-double AxialShares::operator()(const std::vector<Crossing>& crossings) const {
+double AxialTransmittance::operator()(const std::vector<Crossing>& crossings) const {
     double transmittance = 1;
     for (const Crossing& crossing : crossings) {
         const Face& face = surfaces_[static_cast<std::size_t>(crossing.surface)][crossing.in_order];

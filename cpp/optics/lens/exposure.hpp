@@ -10,10 +10,10 @@ namespace REALCAM_NAMESPACE {
 
 /// Transmittance of the axial ray along any path through a lens: the product of the surfaces' reflectances and
 /// transmittances at normal incidence.
-class AxialShares {
+class AxialTransmittance {
 public:
     /// Throws InputError if an index is not known at this wavelength.
-    AxialShares(const LensSystem& lens, double wavelength_nm);
+    AxialTransmittance(const LensSystem& lens, double wavelength_nm);
 
     /// Returns the transmittance of a path, 0 to 1.
     double operator()(const std::vector<Crossing>& crossings) const;

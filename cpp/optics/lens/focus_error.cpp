@@ -16,7 +16,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Ray bundle of the object point on the chief ray of the film's centre, through a lens of any kind. Rays are
 /// parametrised by their intersection with the plane perpendicular to the chief ray at the front surface (their entry),
-/// over which the light is uniform. The class has the members that entry_parts in bundle_quadrature.hpp requires.
+/// over which the light is uniform. The class has the members that quadrature_rays in bundle_quadrature.hpp requires.
 class CentralBundle {
 public:
     /// Coordinates in that plane relative to the chief ray, mm.
@@ -72,7 +72,7 @@ private:
 double smallest_spot_position(const CentralBundle& bundle) {
     constexpr BundleSampling kSampling = {24, 8};
     constexpr int kBlock = 16;
-    const std::vector<EntryPart> parts = entry_parts(bundle, kSampling);
+    const std::vector<QuadratureRay> parts = quadrature_rays(bundle, kSampling);
     // A ray behind the lens: x and y at z = 0, and dx/dz and dy/dz.
     struct Line {
         double weight, position[2], slope[2];

@@ -98,7 +98,7 @@ namespace {
 /// `moves_following`: the surfaces behind move with it.
 void prepend_motion(Surface& surface, const Affine<double>& motion, bool moves_following) {
     SurfacePlacement& own = surface.placement;
-    own = SurfacePlacement::of(own.is_in_place() ? motion : motion * own.frame());
+    own = SurfacePlacement::from_frame(own.is_in_place() ? motion : motion * own.frame());
     own.returns = !moves_following;
 }
 
@@ -175,9 +175,9 @@ LensSystem with_lens_moved(const LensSystem& lens, const SurfacePlacement& move,
     const Affine<double> film = film_on_axis(lens) * lens.film_placement.frame();
     const Vec3d centre = film.origin - Vec3d{0, 0, pivot};
     const Affine<double> motion = translation(centre) * move.frame() * translation(-centre);
-    front = SurfacePlacement::of(motion * front.frame());
+    front = SurfacePlacement::from_frame(motion * front.frame());
     // The film keeps its position: its placement compensates the motion of the last axis.
-    moved.film_placement = SurfacePlacement::of(inverse_motion(film_on_axis(moved)) * film);
+    moved.film_placement = SurfacePlacement::from_frame(inverse_motion(film_on_axis(moved)) * film);
     validate(moved);
     return moved;
 }

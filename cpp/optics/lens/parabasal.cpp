@@ -145,7 +145,7 @@ ParabasalRays parabasal_rays(const LensSystem& lens, const RaysFromFilm& rays, c
     return found;
 }
 
-Vec3d entrance_pupil_middle(const ParabasalRays& rays, double index) {
+Vec3d entrance_pupil_centre(const ParabasalRays& rays, double index) {
     const double distance = index * 0.5 * (rays.stop_by_position.inverse() * rays.stop_by_direction).trace();
     return rays.chief.scene + distance * rays.chief.scene_direction;
 }
@@ -209,7 +209,7 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
     mean.f_number = std::fabs(mean.effective_focal_length) / mean.entrance_pupil_diameter;
     // Chief rays cross where their offsets in the reference plane and their directions cancel.
     const double front = rays.chief.scene.z, at_film = lens.film_position();
-    mean.entrance_pupil_position = entrance_pupil_middle(rays, before).z;
+    mean.entrance_pupil_position = entrance_pupil_centre(rays, before).z;
     const Matrix2 exit = rays.stop_by_film_position.inverse();
     mean.exit_pupil_position =
         at_film + rays.chief.film_direction.z * behind * 0.5 * (exit * rays.stop_by_film_direction).trace();

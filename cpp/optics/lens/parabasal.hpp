@@ -34,7 +34,7 @@ ParabasalRays parabasal_rays(const LensSystem& lens, double wavelength_nm, Vec2<
 /// Returns the centre of the entrance pupil in the camera frame, mm: the point of the chief ray at which rays to the
 /// stop's centre cross, as the mean of both meridians. `index`: refractive index in front of the lens. Not finite if
 /// the pupil is at infinity.
-Vec3d entrance_pupil_middle(const ParabasalRays& rays, double index);
+Vec3d entrance_pupil_centre(const ParabasalRays& rays, double index);
 
 /// Returns the distance from the exit pupil to a film point along its chief ray, mm. The exit pupil is the point at
 /// which rays from the stop's centre cross, as the mean of both meridians. Throws InputError if no chief ray of the

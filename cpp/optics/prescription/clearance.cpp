@@ -37,7 +37,7 @@ FaceOverlap deepest_overlap(const LensSystem& lens, const Face& first, const Fac
     };
     // The gap between two spheres is monotonic in r, as its derivative by r^2 has the sign of the difference of the
     // curvatures. Other shapes are sampled in steps.
-    const auto is_sphere = [](const Surface& s) { return s.conic == 0 && !s.is_asphere() && s.form.is_none(); };
+    const auto is_sphere = [](const Surface& s) { return s.conic == 0 && !s.is_asphere() && s.form.adds_nothing(); };
     const int steps = is_sphere(a) && is_sphere(b) ? 1 : 64;
     const double middle = std::clamp(rim, from, to);
     for (int i = 0; i <= steps; ++i) {

@@ -104,7 +104,7 @@ struct ForbesTerms {
     double radius = 1;  ///< normalisation radius, mm
     std::vector<double> coefficients;  ///< a_0, a_1, ..., mm
 
-    static constexpr FormWords words = {
+    static constexpr FormNames words = {
         .key = "forbes", .name = "Forbes", .variant_key = "kind", .variants = {"bfs", "con"}};
     static constexpr auto variant = &ForbesTerms::kind;
 

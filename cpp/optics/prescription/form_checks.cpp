@@ -50,7 +50,7 @@ std::string terms_error(const Surface& s) {
                    "rim";
     }
     std::string why;
-    over_terms(form, [&](const auto& terms) {
+    for_each_present_terms(form, [&](const auto& terms) {
         if (!why.empty()) return;
         const std::string name = terms.words.name;
         if (!is_valid_length(terms.radius))
@@ -110,7 +110,7 @@ bool reaches_rim(const Surface& s) {
 std::string form_error(const Surface& surface) {
     const SurfaceForm& form = surface.form;
     if (std::string why = aperture_error(surface); !why.empty()) return why;
-    if (!surface.bends_light() && !form.is_none()) return "a stop or an aperture must be a plane";
+    if (!surface.bends_light() && !form.adds_nothing()) return "a stop or an aperture must be a plane";
     if (!std::isfinite(form.curvature_x) || std::fabs(form.curvature_x) > 1 / kShortestRadius)
         return "its radius of curvature in x must be at least 1e-6 mm (leave it out for none)";
     if (!(std::fabs(form.conic_x) <= kLargestConic)) return "the conic in x must lie between -1e6 and 1e6";
@@ -118,7 +118,7 @@ std::string form_error(const Surface& surface) {
         return "only a biconic or a toroid can have a radius of curvature or conic in x";
     if (form.base == BaseForm::toroid && form.conic_x != 0) return "a toroid cannot have a conic in x";
     if (std::string why = terms_error(surface); !why.empty()) return why;
-    return form.is_none() || reaches_rim(surface)
+    return form.adds_nothing() || reaches_rim(surface)
                ? ""
                : "does not extend over its whole clear aperture: its radii, conics or terms end it before";
 }

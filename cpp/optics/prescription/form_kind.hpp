@@ -11,7 +11,7 @@
 
 // Interface of the kinds of sag terms, whose registry is kFormTerms in surface_form.hpp, and the types that they share.
 // A kind is a struct such as ZernikeTerms, which holds the numbers of the terms as a lens file specifies them, and has:
-//   words                static FormWords: the names of this kind
+//   words                static FormNames: the names of this kind
 //   variant              static pointer to the member that holds the variant; absent if there is only one variant
 //   radius               normalisation radius, mm
 //   coefficients         std::vector<double>
@@ -29,7 +29,7 @@
 namespace REALCAM_NAMESPACE {
 
 /// Names of one kind of terms.
-struct FormWords {
+struct FormNames {
     const char* key;  ///< in lens files, in Python, and as a variable of optimisations: "forbes"
     const char* name;  ///< in messages: "Forbes"
     const char* asymmetry = "";  ///< reason why these terms are not rotationally symmetric; empty if they are

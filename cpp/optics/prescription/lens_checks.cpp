@@ -50,7 +50,7 @@ void check_rim(const Surface& s, std::size_t i) {
     if (!(s.inner_semi_diameter >= 0) || s.inner_semi_diameter >= s.clear_semi_diameter)
         fail(i, "the inner semi-diameter must be at least 0 and less than the clear semi-diameter");
     if (const std::string why = form_error(s); !why.empty()) fail(i, why);
-    if (s.form.is_none() && !std::isfinite(s.sag(s.clear_semi_diameter))) {
+    if (s.form.adds_nothing() && !std::isfinite(s.sag(s.clear_semi_diameter))) {
         const double limit = 1 / (std::fabs(s.curvature) * std::sqrt(1 + s.conic));
         fail(i, "the clear semi-diameter of " + mm(s.clear_semi_diameter) +
                     " is larger than the surface, which ends at " + mm(limit) + " from the axis");

@@ -25,7 +25,7 @@ struct ShapeNumbers {
           radial(surface.form.radial.begin(), surface.form.radial.end()) {
         for (const XyTerm& term : surface.form.xy) xy.push_back({term.x, term.y, term.coefficient});
         std::size_t kind = 0;
-        over_rows(surface.form, [&](const auto& optional) {
+        for_each_kind_of_terms(surface.form, [&](const auto& optional) {
             if (optional) terms[kind].assign(optional->coefficients.begin(), optional->coefficients.end());
             ++kind;
         });

@@ -19,7 +19,7 @@ struct SuperconicTerms {
     double radius = 1;  ///< unit of s, mm
     std::vector<double> coefficients;  ///< U_1, V_1, U_2, V_2, ...
 
-    static constexpr FormWords words = {.key = "superconic",
+    static constexpr FormNames words = {.key = "superconic",
                                         .name = "superconic",
                                         .first_number = 1,
                                         .coefficients_key = "coefficients",

@@ -46,18 +46,18 @@ double base_sag(const Surface& surface, double x, double y) {
 double Surface::sag(double x, double y) const {
     const double r2 = x * x + y * y;
     double z = base_sag(*this, x, y);
-    if (form.is_none()) return z;
+    if (form.adds_nothing()) return z;
     const double r = std::sqrt(r2);
     z += r * polynomial(form.radial, r);
     for (const XyTerm& term : form.xy) z += term.coefficient * std::pow(x, term.x) * std::pow(y, term.y);
-    over_terms(form, [&](const auto& terms) { terms.add_sag(z, x, y, {curvature, conic}); });
+    for_each_present_terms(form, [&](const auto& terms) { terms.add_sag(z, x, y, {curvature, conic}); });
     return z;
 }
 
 double Surface::vertex_curvature() const {
     double c = curvature;
     if (form.radial.size() > 1) c += 2 * form.radial[1];
-    over_terms(form, [&](const auto& terms) { c += terms.vertex_curvature(); });
+    for_each_present_terms(form, [&](const auto& terms) { c += terms.vertex_curvature(); });
     return c;
 }
 
@@ -99,7 +99,7 @@ Affine<double> SurfacePlacement::frame() const {
     return about_x * about_y * about_z;
 }
 
-SurfacePlacement SurfacePlacement::of(const Affine<double>& frame) {
+SurfacePlacement SurfacePlacement::from_frame(const Affine<double>& frame) {
     SurfacePlacement result;
     result.decentre = frame.origin;
     const double cos_y = hypotenuse(frame.x.x, frame.y.x);

@@ -32,7 +32,7 @@ struct SurfacePlacement {
 
     /// Returns the placement whose frame() is this rigid transform. If the tilt about y is 90 degrees (gimbal lock),
     /// rotations about x and z are equivalent, and all of it is assigned to x.
-    static SurfacePlacement of(const Affine<double>& frame);
+    static SurfacePlacement from_frame(const Affine<double>& frame);
 };
 
 /// Returns the translation by `distance` along z.

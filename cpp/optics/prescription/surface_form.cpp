@@ -18,13 +18,13 @@ bool any_xy(const std::vector<XyTerm>& terms) {
 
 bool SurfaceForm::has_terms() const {
     bool found = !radial.empty() || !xy.empty();
-    over_terms(*this, [&](const auto&) { found = true; });
+    for_each_present_terms(*this, [&](const auto&) { found = true; });
     return found;
 }
 
-bool SurfaceForm::is_none() const {
+bool SurfaceForm::adds_nothing() const {
     bool found = base != BaseForm::conic || any_of(radial) || any_xy(xy);
-    over_terms(*this, [&](const auto& terms) { found |= any_of(terms.coefficients); });
+    for_each_present_terms(*this, [&](const auto& terms) { found |= any_of(terms.coefficients); });
     return !found;
 }
 
@@ -33,7 +33,7 @@ SurfaceForm SurfaceForm::scaled(double factor) const {
     result.curvature_x /= factor;
     for (std::size_t i = 0; i < radial.size(); ++i) result.radial[i] /= std::pow(factor, static_cast<int>(i));
     for (XyTerm& term : result.xy) term.coefficient *= std::pow(factor, 1 - term.x - term.y);
-    over_terms(result, [&](auto& terms) {
+    for_each_present_terms(result, [&](auto& terms) {
         terms.radius *= factor;
         if (!terms.words.are_lengths) return;
         for (double& coefficient : terms.coefficients) coefficient *= factor;
@@ -46,7 +46,7 @@ SurfaceForm SurfaceForm::negated() const {
     result.curvature_x = -curvature_x;
     form_detail::negate_all(result.radial);
     for (XyTerm& term : result.xy) term.coefficient = -term.coefficient;
-    over_terms(result, [](auto& terms) { terms.negate(); });
+    for_each_present_terms(result, [](auto& terms) { terms.negate(); });
     return result;
 }
 
@@ -55,7 +55,7 @@ std::string SurfaceForm::asymmetry() const {
     if (base == BaseForm::toroid) return "is toroidal";
     if (any_xy(xy)) return "has terms of x and y";
     std::string why;
-    over_terms(*this, [&](const auto& terms) {
+    for_each_present_terms(*this, [&](const auto& terms) {
         if (why.empty() && any_of(terms.coefficients)) why = terms.words.asymmetry;
     });
     return why;

@@ -41,7 +41,7 @@ struct SurfaceForm {
     /// True if the form has terms of any kind, even if all coefficients are 0.
     bool has_terms() const;
     /// True if this form adds nothing: the base is a conic of revolution, and all coefficients are 0.
-    bool is_none() const;
+    bool adds_nothing() const;
     /// Returns the form with all lengths multiplied by `factor`.
     SurfaceForm scaled(double factor) const;
     /// Returns the form with its sag negated.
@@ -62,14 +62,14 @@ using TermsIn = typename std::remove_cvref_t<Optional>::value_type;
 
 /// Calls f(optional) with the std::optional of each kind in kFormTerms, whether the form has these terms or not.
 template <class Form, class F>
-constexpr void over_rows(Form& form, F&& f) {
+constexpr void for_each_kind_of_terms(Form& form, F&& f) {
     std::apply([&](auto... member) { (f(form.*member), ...); }, kFormTerms);
 }
 
 /// Calls f(terms) with the terms of each kind that the form has.
 template <class Form, class F>
-constexpr void over_terms(Form& form, F&& f) {
-    over_rows(form, [&](auto& terms) {
+constexpr void for_each_present_terms(Form& form, F&& f) {
+    for_each_kind_of_terms(form, [&](auto& terms) {
         if (terms) f(*terms);
     });
 }
@@ -77,7 +77,7 @@ constexpr void over_terms(Form& form, F&& f) {
 namespace form_detail {
 /// Returns the names of a kind of terms.
 template <class Terms>
-constexpr const FormWords& names_of(std::optional<Terms> SurfaceForm::*) {
+constexpr const FormNames& names_of(std::optional<Terms> SurfaceForm::*) {
     return Terms::words;
 }
 /// True if `Variant` is the enumeration of the variants of a kind of terms.
@@ -95,7 +95,7 @@ inline constexpr bool is_form_variant =
     std::apply([](auto... member) { return (form_detail::has_variant<E>(member) || ...); }, kFormTerms);
 
 /// Names of the kinds of terms, in the order of kFormTerms.
-inline constexpr std::array<FormWords, kFormTermsCount> kFormWords =
+inline constexpr std::array<FormNames, kFormTermsCount> kFormNames =
     std::apply([](auto... member) { return std::array{form_detail::names_of(member)...}; }, kFormTerms);
 
 }  // namespace REALCAM_NAMESPACE

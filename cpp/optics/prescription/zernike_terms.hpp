@@ -81,7 +81,7 @@ struct ZernikeTerms {
     double radius = 1;  ///< radius of the circle, mm
     std::vector<double> coefficients;  ///< coefficients of the terms 1, 2, ..., mm
 
-    static constexpr FormWords words = {.key = "zernike",
+    static constexpr FormNames words = {.key = "zernike",
                                         .name = "Zernike",
                                         .asymmetry = "has Zernike terms",
                                         .first_number = 1,

@@ -25,7 +25,7 @@ struct BundleSampling {
 };
 
 /// A ray of an integral over a bundle.
-struct EntryPart {
+struct QuadratureRay {
     Vec2<double> entry;  ///< entry point of the ray
     double area;  ///< quadrature weight: area of entry points that the ray represents
 };
@@ -155,12 +155,12 @@ EntryRectangle lit_rectangle(const Bundle& bundle, const RayLoop& loop = {}) {
 /// of each scan line. Because the intervals end at the edges of the light, edges cause no error, and smooth functions
 /// need few rays. In a mirrored bundle each ray has twice its area, to represent its mirror image, too.
 template <class Bundle>
-std::vector<EntryPart> entry_parts(const Bundle& bundle, const std::vector<QuadratureArm>& arms, int nodes) {
+std::vector<QuadratureRay> quadrature_rays(const Bundle& bundle, const std::vector<QuadratureArm>& arms, int nodes) {
     std::vector<GaussNode> rule;
     for (int i = 0; i < nodes; ++i) rule.push_back(gauss_node(nodes, i));
     const double full_turn = bundle.reach.x * bundle.reach.y * 2 * std::numbers::pi;
     const double area = full_turn / static_cast<double>(arms.size());
-    std::vector<EntryPart> parts;
+    std::vector<QuadratureRay> parts;
     for (const QuadratureArm& arm : arms)
         for (const RadialInterval& interval : arm.intervals)
             for (const GaussNode& node : rule) {
@@ -172,8 +172,8 @@ std::vector<EntryPart> entry_parts(const Bundle& bundle, const std::vector<Quadr
 
 /// Same for scan lines that are searched first.
 template <class Bundle>
-std::vector<EntryPart> entry_parts(const Bundle& bundle, BundleSampling sampling, const RayLoop& loop = {}) {
-    return entry_parts(bundle, quadrature_arms(bundle, sampling.arms, loop), sampling.nodes);
+std::vector<QuadratureRay> quadrature_rays(const Bundle& bundle, BundleSampling sampling, const RayLoop& loop = {}) {
+    return quadrature_rays(bundle, quadrature_arms(bundle, sampling.arms, loop), sampling.nodes);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -10,21 +10,21 @@ namespace REALCAM_NAMESPACE {
 inline constexpr int kDiffractionAzimuths = 48;  ///< sectors over half a turn
 inline constexpr int kDiffractionFineRings = 144;  ///< rings at which the pattern is computed
 inline constexpr float kDiffractionFineStep = 1.0f / 24;  ///< width of a fine ring
-inline constexpr float kDiffractionReach = 6;  ///< largest frequency of the cells: the fine rings end there
-inline constexpr int kDiffractionThinRings = 60;  ///< innermost fine rings, which are stored one by one
+inline constexpr float kDiffractionMaxFrequency = 6;  ///< largest frequency of the cells: the fine rings end there
+inline constexpr int kDiffractionUnmergedRings = 60;  ///< innermost fine rings, which are stored one by one
 /// Number of fine rings that are merged into one stored ring further out, where details of the pattern are wider.
-inline constexpr int kDiffractionThickness = 3;
+inline constexpr int kDiffractionMergedRings = 3;
 /// Number of stored rings.
 inline constexpr int kDiffractionRings =
-    kDiffractionThinRings + (kDiffractionFineRings - kDiffractionThinRings) / kDiffractionThickness;
+    kDiffractionUnmergedRings + (kDiffractionFineRings - kDiffractionUnmergedRings) / kDiffractionMergedRings;
 /// Number of cells: stored ring * kDiffractionAzimuths + azimuth is the index of a cell.
 inline constexpr int kDiffractionCells = kDiffractionRings * kDiffractionAzimuths;
 
 /// Returns the stored ring that contains a fine ring.
 constexpr int stored_ring_of(int ring) {
-    return ring < kDiffractionThinRings
+    return ring < kDiffractionUnmergedRings
                ? ring
-               : kDiffractionThinRings + (ring - kDiffractionThinRings) / kDiffractionThickness;
+               : kDiffractionUnmergedRings + (ring - kDiffractionUnmergedRings) / kDiffractionMergedRings;
 }
 
 /// A segment of the aperture's edge.

@@ -54,7 +54,7 @@ MirrorPlanes mirror_planes(const LensSystem& lens) {
         planes.y &= aperture.offset.y == 0;
         // Shapes of these kinds can be symmetric, but rarely are.
         bool is_asymmetric = false;
-        over_terms(surface.form, [&](const auto& terms) { is_asymmetric |= *terms.words.asymmetry != 0; });
+        for_each_present_terms(surface.form, [&](const auto& terms) { is_asymmetric |= *terms.words.asymmetry != 0; });
         if (is_asymmetric || aperture.kind == ApertureOutline::polygon || !aperture.obscurations.empty()) return {};
     }
     clear_broken_symmetries(lens.film_placement);

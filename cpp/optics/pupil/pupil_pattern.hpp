@@ -29,6 +29,6 @@ std::vector<PupilPoint> gauss_rings(int n, const RayLoop& loop = {});
 
 /// Radius of the circle around the stop's opening, mm: the unit of PupilPoint. For an iris, the circle passes through
 /// the corners between its blades.
-double stop_reach(const LensSystem& lens);
+double stop_bounding_radius(const LensSystem& lens);
 
 }  // namespace REALCAM_NAMESPACE

@@ -18,7 +18,7 @@ FieldFan::FieldFan(const LensSystem& nominal, double wavelength_nm, const FieldP
     : object_(nominal, wavelength_nm, field), cos_(azimuth_sin), sin_(-azimuth_cos) {
     const RayAimer aim(nominal, wavelength_nm, field);
     chief_ = aim.chief_ray().entry;
-    const double reach = stop_reach(nominal);
+    const double reach = stop_bounding_radius(nominal);
     const std::vector<PupilPoint> pattern = gauss_rings(rings);
     const std::vector<AimedRay> rays = aim_all(aim, pattern, reach, loop);
     // Least-squares fit of a linear map from the stop to the entry plane. Cross terms are necessary, because rays that

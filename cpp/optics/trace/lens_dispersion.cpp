@@ -10,7 +10,7 @@ WavelengthVariable variable_over(WavelengthRange range) {
     return {static_cast<float>(2 / (high - low)), static_cast<float>(-(high + low) / (high - low))};
 }
 
-std::vector<int> surfaces_with_one_index(const LensSystem& lens) {
+std::vector<int> non_dispersive_surfaces(const LensSystem& lens) {
     std::vector<int> found;
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
         const Surface& surface = lens.surfaces[i];

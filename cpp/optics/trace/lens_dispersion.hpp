@@ -14,7 +14,7 @@ namespace REALCAM_NAMESPACE {
 WavelengthVariable variable_over(WavelengthRange range);
 
 /// Returns the surfaces, counted from 1, whose glass has one refractive index for all wavelengths.
-std::vector<int> surfaces_with_one_index(const LensSystem& lens);
+std::vector<int> non_dispersive_surfaces(const LensSystem& lens);
 
 /// Throws InputError if a glass is not known at all wavelengths of the range, or if the film lies in a dispersive
 /// glass: the measure of directions on the film would then differ between wavelengths.

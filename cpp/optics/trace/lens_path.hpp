@@ -146,7 +146,7 @@ public:
 
     LensView<T> view() const {
         const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
-        const FreeParts<T> free{data_of(frames_), data_of(freeforms_), data_of(apertures_)};
+        const AsymmetricParts<T> free{data_of(frames_), data_of(freeforms_), data_of(apertures_)};
         return {views_.data(), static_cast<int>(views_.size()), kind(), iris_, free};
     }
 

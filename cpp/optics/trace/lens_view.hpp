@@ -80,13 +80,13 @@ struct FrameChanges {
 /// Data of lenses without rotational symmetry, which only LensKind::any has: arrays with an element for each surface,
 /// in the order of the light, or null.
 template <class T>
-struct FreeParts {
+struct AsymmetricParts {
     const FrameChanges<T>* frames = nullptr;
     const FreeformView<T>* freeforms = nullptr;  ///< read only for surfaces that are freeforms
     const ApertureView<T>* apertures = nullptr;
 
     /// Returns the data of the surfaces from `first` on.
-    REALCAM_INLINE FreeParts from(int first) const {
+    REALCAM_INLINE AsymmetricParts from(int first) const {
         return {frames ? frames + first : nullptr, freeforms ? freeforms + first : nullptr,
                 apertures ? apertures + first : nullptr};
     }
@@ -117,7 +117,7 @@ struct LensView {
     int count;  ///< number of surfaces
     LensKind kind;
     Iris<T> iris;
-    FreeParts<T> free = {};  ///< read only if the kind is `any`
+    AsymmetricParts<T> free = {};  ///< read only if the kind is `any`
 };
 
 }  // namespace REALCAM_NAMESPACE

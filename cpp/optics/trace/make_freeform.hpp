@@ -83,7 +83,7 @@ void set_polynomials(FreeformView<T>& view, const SurfaceForm& form, const Shape
     FormPolynomials<Number> sums{reach, {}, {}};
     sums.xy.add(numbers.xy, reach);
     std::size_t kind = 0;
-    over_rows(form, [&](const auto& terms) {
+    for_each_kind_of_terms(form, [&](const auto& terms) {
         if (terms) terms->add_to(sums, numbers.terms[kind], {numbers.curvature, numbers.conic});
         ++kind;
     });

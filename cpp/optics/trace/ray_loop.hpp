@@ -27,7 +27,7 @@ struct RayLoop {
     std::function<void(const AimRequest&)> aim_rays = {};
 
     /// Throws Cancelled if `keep_going` returns false.
-    void heed() const {
+    void throw_if_cancelled() const {
         if (keep_going && !keep_going()) throw Cancelled();
     }
     /// Runs a task of at least a microsecond per ray, by `run`, for the rays 0 to count - 1. No ray's result may depend
@@ -52,11 +52,11 @@ struct RayLoop {
 private:
     /// Numbers of rays between two calls of `keep_going`: some milliseconds of work.
     static constexpr std::size_t kBlock = 1 << 14, kFastBlock = 1 << 20;
-    /// Calls f(first, last) for consecutive blocks of `block` rays, and heed() before each.
+    /// Calls f(first, last) for consecutive blocks of `block` rays, and throw_if_cancelled() before each.
     template <class F>
     void in_blocks(std::size_t count, std::size_t block, F&& f) const {
         for (std::size_t first = 0; first < count; first += block) {
-            heed();
+            throw_if_cancelled();
             f(first, std::min(first + block, count));
         }
     }

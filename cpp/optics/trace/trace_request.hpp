@@ -70,7 +70,7 @@ struct TraceRequest {
 /// Traces the N rays from index `first` on, or those that are left at the end of the arrays. The results of a ray with
 /// bad input are zero, and its surface index is -1.
 template <int N, class T>
-REALCAM_HD inline void trace_rays_of(const TraceRequest<T>& request, std::int64_t first) {
+REALCAM_HD inline void trace_ray_block(const TraceRequest<T>& request, std::int64_t first) {
     LensRays<T, N> rays;
     PathRecord<T, N> record;
     double path_to_entry[N];

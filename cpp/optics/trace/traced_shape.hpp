@@ -51,10 +51,10 @@ void set_search_region(SurfaceView<T>& view, const Surface& surface) {
 template <class T>
 SurfaceView<T> shape_view(const Surface& surface) {
     SurfaceView<T> view{};
-    view.kind = !surface.form.is_none() ? SurfaceShape::freeform
-                : surface.is_asphere()  ? SurfaceShape::asphere
-                : surface.conic != 0    ? SurfaceShape::conic
-                                        : SurfaceShape::sphere;
+    view.kind = !surface.form.adds_nothing() ? SurfaceShape::freeform
+                : surface.is_asphere()       ? SurfaceShape::asphere
+                : surface.conic != 0         ? SurfaceShape::conic
+                                             : SurfaceShape::sphere;
     view.curvature = static_cast<T>(surface.curvature);
     view.conic_factor = static_cast<T>(1 + surface.conic);
     const double rim = surface.clear_semi_diameter, hole = surface.inner_semi_diameter;
@@ -82,7 +82,7 @@ inline bool have_same_shape(const Surface& a, const Surface& b) {
 template <class T>
 TracedShape<T> traced_shape(const Surface& surface) {
     using namespace traced_shape_detail;
-    if (!surface.is_asphere() && surface.form.is_none()) return {shape_view<T>(surface), {}};
+    if (!surface.is_asphere() && surface.form.adds_nothing()) return {shape_view<T>(surface), {}};
     constexpr std::size_t kMaxEntries = 64;
     struct Entry {
         Surface surface;
@@ -94,7 +94,7 @@ TracedShape<T> traced_shape(const Surface& surface) {
     if (found != cache.end()) {
         cache.splice(cache.begin(), cache, found);
     } else {
-        const FreeformView<T> freeform = surface.form.is_none() ? FreeformView<T>{} : freeform_view<T>(surface);
+        const FreeformView<T> freeform = surface.form.adds_nothing() ? FreeformView<T>{} : freeform_view<T>(surface);
         cache.push_front({surface, {shape_view<T>(surface), freeform}});
         if (cache.size() > kMaxEntries) cache.pop_back();
     }

@@ -134,7 +134,8 @@ std::vector<std::int64_t> samples_of(const FilmSums& film) {
 
 SplattedLight view_of(const std::vector<SplatFilm>& films) {
     SplattedLight light;
-    for (std::size_t i = 0; i < std::min<std::size_t>(films.size(), kMostSplats); ++i) light.films[i] = films[i].view();
+    for (std::size_t i = 0; i < std::min<std::size_t>(films.size(), kMaxGhostViews); ++i)
+        light.films[i] = films[i].view();
     return light;
 }
 

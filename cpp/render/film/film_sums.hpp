@@ -89,7 +89,7 @@ struct SplatFilm {
     }
 };
 
-/// Returns a view of at most kMostSplats kinds of splatted light, which must outlive it.
+/// Returns a view of at most kMaxGhostViews kinds of splatted light, which must outlive it.
 SplattedLight view_of(const std::vector<SplatFilm>& films);
 
 /// Returns a view of a film in host memory for its development. `pixels` and `splats` must outlive it.

@@ -197,7 +197,7 @@ const SceneCamera* set_view(Camera& camera, const Assembly& assembly, const View
     validate(assembly);
     camera.motion.clear();
     const SceneCamera* from = chosen_camera(assembly, request);
-    const Assembly still = standing_at(assembly, camera.shutter.opens_s);
+    const Assembly still = frozen_at(assembly, camera.shutter.opens_s);
     const Subject subject(still, normalized(request.up));
     if (from) {
         const Affine<double> transform = from->transform_at(camera.shutter.opens_s);

@@ -43,7 +43,7 @@ struct Facet {
     bool emits = false;
 };
 
-/// Triangles of a scene, including those of its instances unless there are too many to test each (asks_every_triangle).
+/// Triangles of a scene, including those of its instances unless there are too many to test each (has_exact_boxes).
 /// In that case an instance is a single facet.
 class Facets {
 public:
@@ -55,7 +55,7 @@ public:
     void for_each(Visit&& visit) {
         std::size_t first = for_triangles(*assembly_.static_geometry, {}, 0, visit);
         ObjectBoxes boxes;
-        const bool every = asks_every_triangle(assembly_);
+        const bool every = has_exact_boxes(assembly_);
         for (const Instance& instance : assembly_.instances) {
             if (every)
                 first = for_triangles(*instance.object, instance.scene_from_object, first, visit);

@@ -8,7 +8,7 @@ namespace REALCAM_NAMESPACE {
 /// Subject of a scene: the scene without its surroundings. The default view shows it.
 ///
 /// A scene consists of parts: triangles that share vertices, or whole instances if there are too many triangles to test
-/// each (kMostTrianglesTested). Two rules remove parts until neither applies:
+/// each (kMaxTrianglesTested). Two rules remove parts until neither applies:
 /// - If a part carries or encloses others, such as a floor, a table top, a wall or a sky, those are the subject. The
 ///   carrier must be twice and the scene three and a half times as long as they are. Flat parts of half the length of
 ///   the scene, lamps, and parts below a horizontal carrier are surroundings; other parts beside the carrier may have a

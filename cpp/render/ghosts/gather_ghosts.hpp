@@ -27,7 +27,7 @@ struct FilmRays {
     Lanes<float, N> weight;  ///< irradiance on the film per unit of radiance along the ray
 };
 
-/// Ray from a film point to a point of a ghost path's bounds in the last vertex plane (GhostEntry).
+/// Ray from a film point to a point of a ghost path's bounds in the last vertex plane (GhostBounds).
 struct FilmRay {
     Vec3f origin, direction;  ///< lens frame, mm; the direction has the length of the refractive index
     float weight;  ///< irradiance on the film per unit of radiance along the ray
@@ -37,8 +37,8 @@ struct FilmRay {
 // 1).
 
 /// For rotationally symmetric lenses: the bounds depend on the distance of the film point from the axis alone.
-REALCAM_INLINE FilmRay rotational_film_ray(const CameraView& camera, const GhostView& ghosts, const GhostEntry* entries,
-                                           Vec2f film, Vec2f u) {
+REALCAM_INLINE FilmRay rotational_film_ray(const CameraView& camera, const GhostView& ghosts,
+                                           const GhostBounds* entries, Vec2f film, Vec2f u) {
     const auto [x, y] = film;
     const float radius = std::sqrt(x * x + y * y), inverse = 1.0f / select(radius > 0.0f, radius, 1.0f);
     const float out_x = select(radius > 0.0f, x * inverse, 1.0f), out_y = y * inverse;
@@ -54,7 +54,7 @@ REALCAM_INLINE FilmRay rotational_film_ray(const CameraView& camera, const Ghost
 }
 
 /// For lenses without rotational symmetry.
-REALCAM_INLINE FilmRay freeform_film_ray(const CameraView& camera, const GhostView& ghosts, const GhostEntry* entries,
+REALCAM_INLINE FilmRay freeform_film_ray(const CameraView& camera, const GhostView& ghosts, const GhostBounds* entries,
                                          Vec2f film, Vec2f u) {
     const int cell = ghosts.grid.cell_of(film);
     const EntryPoint point = entry_point(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
@@ -90,8 +90,8 @@ REALCAM_INLINE void start_film_rays(const CameraView& camera, const GhostView& g
         const int row = static_cast<int>(u.y * static_cast<float>(camera.height));
         film.block.column[i] = select(column < camera.width, column, camera.width - 1);
         film.block.row[i] = select(row < camera.height, row, camera.height - 1);
-        const float x = camera.film_middle.x + (1.0f - 2.0f * u.x) * camera.film_half_width,
-                    y = camera.film_middle.y + (2.0f * u.y - 1.0f) * camera.film_half_height;
+        const float x = camera.film_centre.x + (1.0f - 2.0f * u.x) * camera.film_half_width,
+                    y = camera.film_centre.y + (2.0f * u.y - 1.0f) * camera.film_half_height;
         const FilmRay ray =
             film_ray<lens_kind>(camera, ghosts, block.path_index, {x, y}, film.block.random(i, dimension::pupil));
         film.rays.origin.set(i, ray.origin);

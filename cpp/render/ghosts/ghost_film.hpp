@@ -27,7 +27,7 @@ inline double ghost_units_per_lux(const SceneView& scene, const CameraView& came
     const LightReceiver middle{front_vertex(camera, camera.front_vertex_m), {0, 0, 0}};
     // Upper bound of the illuminance at the front vertex, lux.
     double incident_lux = scene.has_environment ? 4 * static_cast<double>(environment_importance(scene)) : 0.0;
-    if (scene.light_node_count > 0) incident_lux += static_cast<double>(most_illuminance(scene.light_nodes[0], middle));
+    if (scene.light_node_count > 0) incident_lux += static_cast<double>(max_illuminance(scene.light_nodes[0], middle));
     for (int i = 0; i < scene.sun_count; ++i) incident_lux += static_cast<double>(luminance(scene.suns[i].illuminance));
     const double pixel_mm2 = 4.0 * static_cast<double>(camera.film_half_width) *
                              static_cast<double>(camera.film_half_height) / camera.width / camera.height;
@@ -113,7 +113,7 @@ private:
 
 /// All splatted light of a picture.
 struct SplattedLight {
-    GhostFilmView films[kMostSplats];  ///< one for each kind of light; those without light are empty
+    GhostFilmView films[kMaxGhostViews];  ///< one for each kind of light; those without light are empty
 
     /// Irradiance of a pixel by all kinds of light, lux.
     REALCAM_HD double irradiance(std::int64_t pixel, int channel) const {

@@ -45,7 +45,7 @@ inline constexpr float kEnlarged = 1.0f / 16, kAnywhere = 1.0f / 64, kEnlargemen
 
 }  // namespace ghost_lens_paths_detail
 
-/// Point in the plane of a GhostEntry.
+/// Point in the plane of a GhostBounds.
 struct EntryPoint {
     float along, across;  ///< radial and tangential coordinates, mm
     float density;  ///< density with which the point was sampled, per mm^2
@@ -53,7 +53,7 @@ struct EntryPoint {
 
 /// Samples a point for the bounds `entry` by the mixture above. `reach`: half the side of the square, mm; `u`: random
 /// numbers in [0, 1).
-REALCAM_INLINE EntryPoint entry_point(const GhostEntry& entry, float reach, Vec2f u) {
+REALCAM_INLINE EntryPoint entry_point(const GhostBounds& entry, float reach, Vec2f u) {
     using namespace ghost_lens_paths_detail;
     const bool is_known = entry.half_width > 0.0f;
     const float centre = 0.5f * (entry.low + entry.high), half_length = 0.5f * (entry.high - entry.low);

@@ -18,7 +18,7 @@ inline constexpr std::uint32_t light = 1, entry = 2, time = 3, diffraction = 4;
 
 /// Frame of the camera's lens in render space at one time. Lens coordinates: see ARCHITECTURE.md.
 struct LensFrame {
-    CameraPlacement camera;
+    CameraFrame camera;
     float front_vertex_m;
 
     /// Converts a vector from render space to the axes of the lens.
@@ -40,9 +40,9 @@ REALCAM_INLINE LensFrame lens_frame(const CameraView& camera, float time) {
 /// Returns the index of the pixel at a film point, mm; -1 if the point lies outside the film.
 REALCAM_INLINE std::int32_t pixel_at(const CameraView& camera, float x, float y) {
     const float column =
-        0.5f * static_cast<float>(camera.width) * (1.0f - (x - camera.film_middle.x) / camera.film_half_width);
+        0.5f * static_cast<float>(camera.width) * (1.0f - (x - camera.film_centre.x) / camera.film_half_width);
     const float row =
-        0.5f * static_cast<float>(camera.height) * (1.0f + (y - camera.film_middle.y) / camera.film_half_height);
+        0.5f * static_cast<float>(camera.height) * (1.0f + (y - camera.film_centre.y) / camera.film_half_height);
     const bool inside = (column >= 0.0f) & (column < static_cast<float>(camera.width)) & (row >= 0.0f) &
                         (row < static_cast<float>(camera.height));
     return inside ? static_cast<std::int32_t>(row) * camera.width + static_cast<std::int32_t>(column) : -1;
@@ -131,7 +131,7 @@ struct LightEntry {
 // towards the light in the lens's axes; `u`: random numbers in [0, 1).
 
 /// For rotationally symmetric lenses: the bounds depend on the angle to the axis alone.
-REALCAM_INLINE LightEntry rotational_light_entry(const GhostView& ghosts, const GhostEntry* entries, Vec3f from,
+REALCAM_INLINE LightEntry rotational_light_entry(const GhostView& ghosts, const GhostBounds* entries, Vec3f from,
                                                  Vec2f u) {
     const auto [x, y, z] = from;
     const float sine = std::sqrt(x * x + y * y), half_tangent = sine / (1.0f - z);  // NaN directly behind the lens
@@ -148,7 +148,7 @@ REALCAM_INLINE LightEntry rotational_light_entry(const GhostView& ghosts, const 
 }
 
 /// For lenses without rotational symmetry.
-REALCAM_INLINE LightEntry freeform_light_entry(const GhostView& ghosts, const GhostEntry* entries, Vec3f from,
+REALCAM_INLINE LightEntry freeform_light_entry(const GhostView& ghosts, const GhostBounds* entries, Vec3f from,
                                                Vec2f u) {
     const bool is_ahead = from.z < kMaxLightZ;
     const Vec3f light = select(is_ahead, from, Vec3f{0, 0, -1});

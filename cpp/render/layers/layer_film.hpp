@@ -41,7 +41,7 @@ private:
 
 /// Accumulated layers of a film, row by row. A vector is empty before its layers are computed.
 struct LayerFilm {
-    std::vector<LayerSum> sums;                     ///< for kSampledLayers
+    std::vector<LayerSum> sums;  ///< for kSampledLayers
     std::vector<PixelCentreSurface> pixel_centres;  ///< for kPixelCentreLayers
 };
 

@@ -102,7 +102,7 @@ std::optional<SceneAndCamera> without_disabled_motion(const Assembly& scene, con
     const double middle_s = shutter.opens_s + 0.5 * camera.exposure_time_s;
     changed.camera.pose = pose_at(camera, middle_s);
     changed.camera.motion.clear();
-    changed.scene = standing_at(scene, middle_s);
+    changed.scene = frozen_at(scene, middle_s);
     return changed;
 }
 

@@ -40,7 +40,7 @@ REALCAM_HD inline void trace_layers(const SceneView& view, const CameraView& cam
     CameraRays<N> camera_rays;
     SceneRays<N> rays;
     Hits<N> hits;
-    if (has_any_lens(camera))
+    if (needs_general_lens_code(camera))
         generate_exposed_rays<LensKind::any>(camera, block, camera_rays, rays.time);
     else
         generate_exposed_rays<LensKind::rotational>(camera, block, camera_rays, rays.time);
@@ -75,7 +75,7 @@ REALCAM_HD inline void trace_pixel_centres(const SceneView& view, const CameraVi
     Hits<N> hits;
     pixel_centre_rays(camera, block, camera_rays, rays.time);
     // One ray stands for the whole pixel, so that partly opaque surfaces must not depend on chance.
-    for (int i = 0; i < N; ++i) rays.number[i] = kDecidedRay;
+    for (int i = 0; i < N; ++i) rays.number[i] = kDeterministicRay;
     trace_to_surfaces(camera_rays, scene, rays, hits);
     for (int i = 0; i < N; ++i) {
         surfaces[i] = {

@@ -24,7 +24,7 @@ float half_tangent_of(Vec3f from) {
 
 /// Returns the entry plane of a light in the axes of the lens, with the front vertex at the origin.
 EntryPlane plane_in_lens(const TracedLight& light) {
-    CameraPlacement lens{};
+    CameraFrame lens{};
     lens.right = {1, 0, 0};
     lens.up = {0, 1, 0};
     lens.backward = {0, 0, 1};
@@ -86,7 +86,7 @@ LightEntries::Probe LightEntries::probe(const Positions& positions, const Traced
         for (int k = 0; k < kBlock; ++k) {
             if (rays.status[k] != 0) continue;
             const Vec2f landing = film_surface(camera_).landing(rays.origin[k], rays.direction[k]);
-            const Vec2f film = {landing.x - camera_.film_middle.x, landing.y - camera_.film_middle.y};
+            const Vec2f film = {landing.x - camera_.film_centre.x, landing.y - camera_.film_centre.y};
             // A margin of one pixel, for other wavelengths and for diffraction.
             if (!(std::fabs(film.x) <= camera_.film_half_width + 1 / columns_per_mm) ||
                 !(std::fabs(film.y) <= camera_.film_half_height + 1 / columns_per_mm))
@@ -121,7 +121,7 @@ std::optional<FoundLight> LightEntries::find(const LightGroup& group) const {
         const float off_axis = hypotenuse(nearest.x, nearest.y);
         nearest = {std::max(0.0f, off_axis - front_reach_), 0, nearest.z};
     }
-    GhostEntry entry{};  // unknown: the whole front is searched
+    GhostBounds entry{};  // unknown: the whole front is searched
     if (pupil_entries_) {
         constexpr float kFieldMargin = 1.5f;  // the pupil's rays sample the field only at some angles
         if (!(half_tangent_of(normalized(nearest)) < kFieldMargin * pupil_entries_->largest_half_tangent()))

@@ -46,7 +46,7 @@ private:
     const CameraView& camera_;
     LensView<float> to_film_;  ///< surfaces of the direct path, from the scene to the film
     const PupilTracer& tracer_;
-    const PupilEntries* pupil_entries_;  ///< for a rotationally symmetric lens; otherwise null
+    const PupilEntryBounds* pupil_entries_;  ///< for a rotationally symmetric lens; otherwise null
     float front_reach_;  ///< radius of a circle that contains all points at which light enters the lens, mm
 };
 

@@ -78,7 +78,7 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
             if constexpr (has_wavelengths) wavelength[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
         }
         const Vec2f entry_mm = light.entries.at(sample_joint_2d(stream, sample, traced_dimension::entry));
-        CameraPlacement placement = camera;
+        CameraFrame placement = camera;
         if constexpr (scene_kind == SceneKind::any) placement = camera_at(camera, samples.time[i]);
         const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);
         const Vec3f entry = plane.origin + (0.001f * entry_mm.x) * plane.along + (0.001f * entry_mm.y) * plane.across;

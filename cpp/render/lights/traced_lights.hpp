@@ -50,7 +50,7 @@ TracedLights traced_lights(const SceneView& scene, const CameraView& camera, con
 double least_lamp_share(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
                         LightTracing tracing);
 
-/// Returns a view for each kind of splatted light of a picture, at most kMostSplats: ghosts and starbursts of the
+/// Returns a view for each kind of splatted light of a picture, at most kMaxGhostViews: ghosts and starbursts of the
 /// set-up, and the images of `lights`.
 std::vector<GhostView> splatted_lights(const CameraSetup& setup, const TracedLights& lights);
 

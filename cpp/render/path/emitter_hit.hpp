@@ -25,7 +25,7 @@ struct EntryPlane {
 };
 
 /// Returns the entry plane of a light for a camera at one time.
-REALCAM_INLINE EntryPlane entry_plane(const CameraPlacement& camera, float front_vertex_m, const TracedLight& light) {
+REALCAM_INLINE EntryPlane entry_plane(const CameraFrame& camera, float front_vertex_m, const TracedLight& light) {
     const auto to_scene = [&](Vec3f in_lens) {
         return in_lens.x * camera.right + in_lens.y * camera.up + in_lens.z * camera.backward;
     };
@@ -54,7 +54,7 @@ REALCAM_INLINE float camera_hit_weight(const SceneView& scene, const CameraView&
     if (light_index < 0) return 1.0f;
     const TracedLight light = lights.lights[light_index];
     const float time = time_of<scene_kind>(path, slot);
-    CameraPlacement placement = camera;
+    CameraFrame placement = camera;
     if constexpr (scene_kind == SceneKind::any) placement = camera_at(camera, time);
     const float area_m2 = area_light_at<scene_kind>(scene, area, time).area;
     const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);

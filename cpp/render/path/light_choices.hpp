@@ -80,7 +80,7 @@ REALCAM_INLINE void choose_lights(const SceneView& scene, const Receivers& recei
             for (int i = 0; i < kWidth; ++i) {
                 const bool is_inner = second[i] > 0;
                 LightTreePath path = {remaining_u[i], bits[i], node[i], probability[i]};
-                const bool is_first = path.take_turn(firsts[i], seconds[i], second[i], receiver(begin + i));
+                const bool is_first = path.descend(firsts[i], seconds[i], second[i], receiver(begin + i));
                 remaining_u[i] = select(is_inner, path.u, remaining_u[i]);
                 bits[i] = path.seed;
                 node[i] = select(is_inner, path.node, node[i]);

@@ -136,7 +136,7 @@ public:
                 const LightNode all = scene.light_nodes[0];
                 REALCAM_LANES
                 for (int i = 0; i < slots; ++i)
-                    local[i] = most_illuminance(all, {surfaces.position[i], surfaces.normal[i]});
+                    local[i] = max_illuminance(all, {surfaces.position[i], surfaces.normal[i]});
             }
             for (int k = 0; k < scene.sun_count; ++k) {
                 const SunLight sun = scene.suns[k];
@@ -151,7 +151,7 @@ public:
             scale_[i] = kinds.shares.scale;
             local_[i] = kinds.local_probability;
             environment_[i] = kinds.environment_probability;
-            is_apart_[i] = kinds.environment_is_apart;
+            is_apart_[i] = kinds.environment_is_separate;
         }
     }
     REALCAM_INLINE LightKinds operator[](int lane) const {
@@ -160,7 +160,7 @@ public:
 
 private:
     Lanes<float, N> even_, scale_, local_, environment_;  ///< numbers of LightKinds
-    Lanes<std::int32_t, N> is_apart_;  ///< LightKinds::environment_is_apart
+    Lanes<std::int32_t, N> is_apart_;  ///< LightKinds::environment_is_separate
 };
 
 namespace light_samples_detail {
@@ -213,7 +213,7 @@ REALCAM_INLINE void choose_local_lights(const SceneView& scene, const LightKinds
     Lanes<std::uint32_t, N> seeds;
     for (int i = 0; i < slots; ++i) seeds[i] = seed(i);
     REALCAM_LANES
-    for (int i = 0; i < slots; ++i) remaining_u[i] = left_over(u[i].x, kinds[i].local_probability);
+    for (int i = 0; i < slots; ++i) remaining_u[i] = remapped_random(u[i].x, kinds[i].local_probability);
     choose_lights<N>(
         scene,
         [&](int i) -> LightReceiver {

@@ -16,7 +16,7 @@ inline SceneKind kernel_scene_kind(const SceneView& scene, const CameraView& cam
 /// that serve only for comparison, pixel pupils and the polynomial model; with these the kernels for rotationally
 /// symmetric lenses are used.
 inline LensKind kernel_lens_kind(const CameraView& camera) {
-    if (has_any_lens(camera)) return LensKind::any;
+    if (needs_general_lens_code(camera)) return LensKind::any;
     const bool is_comparison = camera.pixel_pupils.known || camera.model == CameraModel::polynomial_lens;
     return is_comparison && camera.lens.kind == LensKind::plain ? LensKind::rotational : camera.lens.kind;
 }

@@ -132,8 +132,8 @@ REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, Sky
         const bool is_used = surfaces.is_glossy[i] != 0;
         Vec2f number = u[i];
         const bool is_diffuse = number.x < probabilities.diffuse;
-        number.x = left_over(select(is_diffuse, number.x, number.x - probabilities.diffuse),
-                             select(is_diffuse, probabilities.diffuse, probabilities.specular));
+        number.x = remapped_random(select(is_diffuse, number.x, number.x - probabilities.diffuse),
+                                   select(is_diffuse, probabilities.diffuse, probabilities.specular));
         const Vec3f direction = bsdf.sample(is_diffuse, number);
         const GlossyBsdf::Value value = bsdf.eval(direction);
         const float pdf = probabilities.pdf_of(value);

@@ -54,9 +54,9 @@ struct LightRays {
 template <class BsdfT>
 REALCAM_INLINE void keep_scattering_lobes(const PathSettings& settings, BsdfT& bsdf) {
     if (settings.transport == LightTransport::whitted)
-        bsdf.keep_mirrors();
+        bsdf.keep_delta_lobes();
     else
-        bsdf.keep_narrow_lobes();
+        bsdf.remove_diffuse_lobe();
 }
 
 /// Sets the shadow ray of a slot and its unoccluded contribution: the light sample, reflected by the BSDF, with its MIS

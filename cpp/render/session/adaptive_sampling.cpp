@@ -109,7 +109,7 @@ double AdaptiveSampling::left() const {
     double sum = 0;
     for (std::size_t h = 0; h < halves_.size(); ++h) {
         if (halves_[h].is_finished) continue;
-        const double end = std::min(samples_at_goal(other(h)), static_cast<double>(goal_.most_samples));
+        const double end = std::min(samples_at_goal(other(h)), static_cast<double>(goal_.max_samples));
         sum += halves_[h].pixels * std::max(0.0, end - halves_[h].samples);
     }
     return sum;
@@ -178,7 +178,7 @@ double AdaptiveSampling::samples_at_goal(std::size_t half) const {
 }
 
 double AdaptiveSampling::additional_samples(const Half& half, double end) const {
-    const double limit = std::min(half.samples, static_cast<double>(goal_.most_samples) - half.samples);
+    const double limit = std::min(half.samples, static_cast<double>(goal_.max_samples) - half.samples);
     if (half.is_finished || half.pixels == 0 || limit < 1) return 0;
     const double step = std::max(1.0, half.samples / 4);
     return std::clamp(std::ceil((end - half.samples) / step) * step, 0.0, limit);

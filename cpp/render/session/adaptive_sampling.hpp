@@ -41,9 +41,7 @@ public:
 
     /// Returns the samples per pixel with which sampling starts. Fewer would not show how noisy the pixels are; more
     /// would be too many in smooth regions.
-    static std::int64_t first_samples(const NoiseGoal& goal) {
-        return std::min(std::int64_t{8}, goal.most_samples / 2);
-    }
+    static std::int64_t first_samples(const NoiseGoal& goal) { return std::min(std::int64_t{8}, goal.max_samples / 2); }
 
     /// `width`, `height`: of the film in pixels; `iso`: for noise in 8-bit codes. `exposure`: that of the picture so
     /// far, lux seconds, 3 per pixel; `samples`: sample count of each pixel; `traced`: the splatted part of the

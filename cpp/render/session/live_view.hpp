@@ -31,7 +31,7 @@ public:
     Image picture(const Camera& camera, const RenderSettings& settings, const KeepGoing& keep_going = {}) const;
 
     /// Cancels all frames in progress; may be called from any thread. The next frame begins a new picture.
-    void cancel() { session_->cancel(Collected::drop); }
+    void cancel() { session_->cancel(OnCancel::drop); }
 
 private:
     std::shared_ptr<Session> session_;

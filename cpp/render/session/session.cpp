@@ -129,7 +129,7 @@ void Session::sample_part(std::int64_t first, int count, const Progress& progres
     if (stop) throw Cancelled();
 }
 
-RegionSums Session::expose_region(const FilmRegion& region, std::int64_t first, int count,
+RegionSums Session::sample_region(const FilmRegion& region, std::int64_t first, int count,
                                   const std::vector<std::uint32_t>& counts, const Progress& progress) {
     if (!counts.empty() && counts.size() != region.pixels())
         throw InputError("expected a sample count for each pixel of the region");
@@ -144,8 +144,8 @@ RegionSums Session::expose_region(const FilmRegion& region, std::int64_t first, 
     return sums;
 }
 
-std::vector<LayerSum> Session::see_region(const FilmRegion& region, std::int64_t first, int count,
-                                          const Progress& progress) {
+std::vector<LayerSum> Session::layer_sums_of_region(const FilmRegion& region, std::int64_t first, int count,
+                                                    const Progress& progress) {
     std::vector<LayerSum> sums;
     std::atomic<std::int64_t> done{0};
     sample_part(first, count, progress, done, region.pixels(), [&](const SampleRange& range, OwnStop& stop) {
@@ -156,7 +156,7 @@ std::vector<LayerSum> Session::see_region(const FilmRegion& region, std::int64_t
     return sums;
 }
 
-std::vector<SplatFilm> Session::expose_splats(std::int64_t first, int count, const Progress& progress) {
+std::vector<SplatFilm> Session::sample_splats(std::int64_t first, int count, const Progress& progress) {
     std::vector<SplatFilm> films;
     const std::atomic<std::int64_t> done{0};
     sample_part(first, count, progress, done, 1,
@@ -200,12 +200,12 @@ SampleCounts Session::sample_counts(const KeepGoing& keep_going) {
     return {width, height, is_ready_ && !is_blank_ ? count_samples() : std::vector<std::int64_t>(pixels)};
 }
 
-void Session::cancel(Collected collected) {
+void Session::cancel(OnCancel collected) {
     raise_stop();
     const std::unique_lock lock(mutex_);
     const LowerStop lower{*this};
     wait_for_frames({});
-    if (collected == Collected::drop) discard_samples();
+    if (collected == OnCancel::drop) discard_samples();
 }
 
 Session::SessionLock::SessionLock(std::timed_mutex& mutex, const KeepGoing& keep_going)

@@ -30,7 +30,7 @@ struct SampleCounts {
 };
 
 /// Treatment of the samples that were accumulated before a cancellation.
-enum class Collected {
+enum class OnCancel {
     keep,  ///< they remain part of the picture
     drop,  ///< the picture starts from scratch
 };
@@ -102,17 +102,17 @@ public:
     /// kSamplesPerSum. On a CPU, the sums of all parts, added in the order of the samples, equal those of a single
     /// rendering bit by bit. `counts`: how many of these samples each pixel of the region takes, row by row; empty: all
     /// of them. Throws InputError and Cancelled.
-    RegionSums expose_region(const FilmRegion& region, std::int64_t first, int count,
+    RegionSums sample_region(const FilmRegion& region, std::int64_t first, int count,
                              const std::vector<std::uint32_t>& counts = {}, const Progress& progress = {});
 
-    /// Returns the sums for kSampledLayers of such samples of a region's pixels. Throws as `expose_region`.
-    std::vector<LayerSum> see_region(const FilmRegion& region, std::int64_t first, int count,
-                                     const Progress& progress = {});
+    /// Returns the sums for kSampledLayers of such samples of a region's pixels. Throws as `sample_region`.
+    std::vector<LayerSum> layer_sums_of_region(const FilmRegion& region, std::int64_t first, int count,
+                                               const Progress& progress = {});
 
     /// Returns the splatted light (SplattedLight) that belongs to such samples of all pixels: one film for each kind of
     /// light of the picture, also if `count` is 0. The sums are integers, so that parts can be added in any order.
-    /// Throws as `expose_region`.
-    std::vector<SplatFilm> expose_splats(std::int64_t first, int count, const Progress& progress = {});
+    /// Throws as `sample_region`.
+    std::vector<SplatFilm> sample_splats(std::int64_t first, int count, const Progress& progress = {});
 
     /// Develops a film that was merged from parts: returns the picture that `picture` would return if this session had
     /// accumulated `film`. Throws InputError if the film does not fit the scene, camera and settings, and Cancelled.
@@ -123,7 +123,7 @@ public:
 
     /// Ends all work in progress; may be called from any thread. Frames and other threads' calls throw Cancelled.
     /// Returns when the samples in progress are complete.
-    void cancel(Collected collected = Collected::keep);
+    void cancel(OnCancel collected = OnCancel::keep);
 
 protected:
     /// Stop request of one call, which is withdrawn when the call ends. Assigning true requests a stop of the device's
@@ -293,9 +293,9 @@ private:
     template <class AuxiliaryLayers, class Counts>
     void add_layers(Image& image, const LayerFilm& layers, AuxiliaryLayers&& auxiliary, Counts&& counts);
 
-    /// Common part of expose_region, see_region and expose_splats: checks the arguments, and calls work(range, stop) on
-    /// a thread of its own, with progress reports. `done`: counter of samples, which `work` increments; `pixels`:
-    /// number of pixels whose samples it counts.
+    /// Common part of sample_region, layer_sums_of_region and sample_splats: checks the arguments, and calls
+    /// work(range, stop) on a thread of its own, with progress reports. `done`: counter of samples, which `work`
+    /// increments; `pixels`: number of pixels whose samples it counts.
     template <class Work>
     void sample_part(std::int64_t first, int count, const Progress& progress, const std::atomic<std::int64_t>& done,
                      std::size_t pixels, Work&& work);

@@ -42,7 +42,8 @@ Image take_picture(Session& session, const Assembly& scene, const Camera& camera
     std::string shortfall;
     bool is_stopped = false;
     try {
-        if (settings.noise) shortfall = shortfall_of(session.add_until(*settings.noise, progress), *settings.noise);
+        if (settings.noise)
+            shortfall = shortfall_message(session.add_until(*settings.noise, progress), *settings.noise);
         // With learned pupils, samples depend on the rounds, which must therefore be the same for all pictures.
         else if (keep_partial && progress && settings.pupil_sampling != PupilSampling::pixel)
             add_evenly(session, settings.spp, progress);
@@ -55,7 +56,7 @@ Image take_picture(Session& session, const Assembly& scene, const Camera& camera
     constexpr std::int64_t kMaxLayerSamplesAfterStop = 16;  // after a stop, layers of all samples would take too long
     Image image = session.picture(keep_partial, is_stopped ? kMaxLayerSamplesAfterStop : Session::kAllSamples);
     if (is_stopped)
-        shortfall = settings.noise ? "it was stopped; " + shortfall_of(session.noise_so_far(), *settings.noise)
+        shortfall = settings.noise ? "it was stopped; " + shortfall_message(session.noise_so_far(), *settings.noise)
                                    : stop_message(image.spp, settings.spp);
     image.shortfall = std::move(shortfall);
     image.stats.setup_seconds = setup_seconds;

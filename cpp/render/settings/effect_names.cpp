@@ -117,7 +117,7 @@ std::string surfaces_text(const std::vector<int>& numbers, const LensSystem& len
 
 std::vector<std::string> effect_notices(const EffectChoice& effects, const LensSystem& lens) {
     std::vector<std::string> notices;
-    if (const std::vector<int> without = surfaces_with_one_index(lens); effects.dispersion && !without.empty()) {
+    if (const std::vector<int> without = non_dispersive_surfaces(lens); effects.dispersion && !without.empty()) {
         const bool one = without.size() == 1;
         notices.push_back(std::string("dispersion: the ") + (one ? "glass of " : "glasses of ") +
                           surfaces_text(without, lens) + (one ? " has" : " have") + " one index only, and so " +
@@ -125,9 +125,9 @@ std::vector<std::string> effect_notices(const EffectChoice& effects, const LensS
     }
     std::vector<int> unknown = surfaces_with_unknown_coating(lens);
     for (int& surface : unknown) ++surface;  // counted from 1
-    if (any_is(effects, &EffectInfo::needs_coatings) && !unknown.empty())
-        notices.push_back(std::string(first_that(effects, &EffectInfo::needs_coatings)->name) + ": the coating of " +
-                          surfaces_text(unknown, lens) +
+    if (any_active_has(effects, &EffectInfo::needs_coatings) && !unknown.empty())
+        notices.push_back(std::string(first_active_with(effects, &EffectInfo::needs_coatings)->name) +
+                          ": the coating of " + surfaces_text(unknown, lens) +
                           " is unknown; glass is assumed to be uncoated, and a mirror to be perfect");
     return notices;
 }

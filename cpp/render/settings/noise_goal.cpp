@@ -12,7 +12,7 @@ void validate(const NoiseGoal& goal) {
     if (!(goal.noise >= kMinNoise) || !std::isfinite(goal.noise))
         throw InputError(goal.unit == NoiseUnit::codes ? "noise_codes must be at least 1e-9 (8-bit codes)"
                                                        : "noise must be at least 1e-9 (a fraction of the light)");
-    if (goal.most_samples < 2 || goal.most_samples > (1 << 24))
+    if (goal.max_samples < 2 || goal.max_samples > (1 << 24))
         throw InputError("max_spp must lie between 2 and 16777216");
     if (!(goal.seconds > 0)) throw InputError("seconds must be above 0");
 }
@@ -24,7 +24,7 @@ NoiseGoal goal_of(const NoiseRequest& request) {
     if (request.noise) goal.unit = NoiseUnit::relative;
     goal.noise = request.noise.value_or(request.noise_codes.value_or(goal.noise));
     goal.seconds = request.seconds.value_or(goal.seconds);
-    goal.most_samples = request.max_spp.value_or(goal.most_samples);
+    goal.max_samples = request.max_spp.value_or(goal.max_samples);
     validate(goal);
     return goal;
 }
@@ -35,14 +35,14 @@ void check_for_missed_lamps(ReachedNoise& reached, double share, std::int64_t sa
     if (!(share * static_cast<double>(samples) < kExpectedHits)) return;
     reached.is_reached = false;
     reached.missed_fraction = share;
-    reached.samples_wanted = std::max(reached.samples_wanted, std::ceil(kExpectedHits / share));
+    reached.samples_required = std::max(reached.samples_required, std::ceil(kExpectedHits / share));
 }
 
-std::string shortfall_of(const ReachedNoise& reached, const NoiseGoal& goal) {
+std::string shortfall_message(const ReachedNoise& reached, const NoiseGoal& goal) {
     if (reached.is_reached) return "";
     if (!(reached.noise >= 0))
         return "too few samples were taken to measure the noise; more time or samples are needed";
-    const std::string required = counted(rounded(reached.samples_wanted, 2), "sample");
+    const std::string required = counted(rounded(reached.samples_required, 2), "sample");
     if (reached.missed_fraction < 1)
         return "lamps that fill only 1/" + number_text(1 / reached.missed_fraction, 2) +
                " of a pixel's field of view may be missing from the picture, because light is not traced from them: "

@@ -20,7 +20,7 @@ enum class NoiseUnit {
 struct NoiseGoal {
     double noise = 1;
     NoiseUnit unit = NoiseUnit::codes;
-    std::int64_t most_samples = 4096;  ///< limit per pixel, whatever its noise is
+    std::int64_t max_samples = 4096;  ///< limit per pixel, whatever its noise is
     double seconds = std::numeric_limits<double>::infinity();  ///< time limit for sampling
 
     bool operator==(const NoiseGoal&) const = default;
@@ -31,7 +31,7 @@ struct NoiseRequest {
     std::optional<double> noise;        ///< NoiseGoal::noise in NoiseUnit::relative
     std::optional<double> noise_codes;  ///< NoiseGoal::noise in NoiseUnit::codes
     std::optional<double> seconds;      ///< NoiseGoal::seconds
-    std::optional<std::int64_t> max_spp;  ///< NoiseGoal::most_samples
+    std::optional<std::int64_t> max_spp;  ///< NoiseGoal::max_samples
 
     /// True if no value is given.
     bool says_nothing() const { return !noise && !noise_codes && !seconds && !max_spp; }
@@ -41,7 +41,7 @@ struct NoiseRequest {
 struct ReachedNoise {
     double noise = std::numeric_limits<double>::quiet_NaN();  ///< noise of the noisiest tile, in the goal's unit
     bool is_reached = false;
-    double samples_wanted = noise;  ///< samples per pixel that the noisiest tile needs
+    double samples_required = noise;  ///< samples per pixel that the noisiest tile needs
     /// If lamps may have been missed by all samples: smallest fraction of a pixel's footprint that such a lamp fills;
     /// otherwise 1.
     double missed_fraction = 1;
@@ -59,6 +59,6 @@ NoiseGoal goal_of(const NoiseRequest& request);
 void check_for_missed_lamps(ReachedNoise& reached, double share, std::int64_t samples);
 
 /// Returns a sentence that says how far a goal was missed; empty if it was reached.
-std::string shortfall_of(const ReachedNoise& reached, const NoiseGoal& goal);
+std::string shortfall_message(const ReachedNoise& reached, const NoiseGoal& goal);
 
 }  // namespace REALCAM_NAMESPACE

@@ -20,8 +20,8 @@ std::optional<GhostChoice> RenderSettings::ghost_choice() const {
 std::string spectrum_error(const RenderSettings& settings) {
     const EffectChoice& effects = settings.effects;
     if (effects.have_wavelengths() || effects.is_automatic) return "";
-    const std::string one_of = " needs one of the effects " + effects_that(&EffectInfo::has_wavelengths) +
-                               ", none of which is switched on";
+    const std::string one_of =
+        " needs one of the effects " + effects_that(&EffectInfo::has_wavelengths) + ", none of which is switched on";
     if (settings.illuminant) return "illuminant" + one_of;
     if (settings.lens_filter && !settings.lens_filter->is_neutral()) return "lens_filter: a coloured filter" + one_of;
     return "";
@@ -30,7 +30,7 @@ std::string spectrum_error(const RenderSettings& settings) {
 void validate(const RenderSettings& settings) {
     validate_spp(settings.spp);
     if (settings.noise) validate(*settings.noise);
-    if (settings.max_bounces && (*settings.max_bounces < 0 || *settings.max_bounces > kMostBounces))
+    if (settings.max_bounces && (*settings.max_bounces < 0 || *settings.max_bounces > kMaxBounces))
         throw InputError("max_bounces must be \"auto\", or lie between 0 and 64");
     if (!(settings.clamp >= 0)) throw InputError("clamp must be 0 (none) or a radiance in cd/m^2");
     if (settings.threads < 0 || settings.threads > kMaxThreads)
@@ -57,10 +57,10 @@ void validate_effects(const RenderSettings& settings, const Camera& camera) {
         throw InputError("layers: a pinhole has no dual-pixel halves; choose another camera model");
     if (settings.layers.has_any(kHalfLayers) && settings.pupil_sampling == PupilSampling::pixel)
         throw InputError("pupil_sampling: pixel excludes the layers of dual-pixel halves");
-    if (const EffectInfo* effect = first_that(effects, &EffectInfo::needs_round_lens))
+    if (const EffectInfo* effect = first_active_with(effects, &EffectInfo::needs_rotational_lens))
         require_radial_pupil(camera.lens, std::string(effect->name));
     if (camera.model == CameraModel::full_lens) return;
-    if (const EffectInfo* effect = first_that(effects, &EffectInfo::needs_full_lens))
+    if (const EffectInfo* effect = first_active_with(effects, &EffectInfo::needs_full_lens))
         throw InputError(std::string(effect->name) + ": the camera's model must be full");
 }
 

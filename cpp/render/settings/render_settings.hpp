@@ -48,7 +48,7 @@ inline constexpr EffectChoice kAutomaticEffects = [] {
 }();
 
 /// Limit on RenderSettings::max_bounces: after 64 mirrors that reflect 95%, 4% of the light is left.
-inline constexpr int kMostBounces = 64;
+inline constexpr int kMaxBounces = 64;
 
 /// Settings of a picture, common to the command line, shot files, Python, and all kinds of sessions.
 struct RenderSettings {
@@ -94,8 +94,8 @@ struct RenderSettings {
     }
     /// True if effects or bounces are left to the planner.
     bool needs_plan() const { return effects.is_automatic || !max_bounces; }
-    /// Settings of the path tracer; undecided bounces are set to kMostBounces.
-    PathSettings path() const { return {max_bounces.value_or(kMostBounces), transport, static_cast<float>(clamp)}; }
+    /// Settings of the path tracer; undecided bounces are set to kMaxBounces.
+    PathSettings path() const { return {max_bounces.value_or(kMaxBounces), transport, static_cast<float>(clamp)}; }
 };
 
 /// Throws InputError if the number of samples per pixel is out of range.

@@ -38,7 +38,7 @@ BoundingBox bounding_box(const Assembly& assembly) {
     BoundingBox box;
     add_triangles(box, *assembly.static_geometry, {});
     ObjectBoxes objects;
-    const bool is_exact = asks_every_triangle(assembly);
+    const bool is_exact = has_exact_boxes(assembly);
     for (const Instance& instance : assembly.instances) {
         if (is_exact)
             add_triangles(box, *instance.object, instance.scene_from_object);

@@ -51,14 +51,14 @@ private:
 };
 
 /// Up to this many instanced triangles bounding boxes are exact; beyond, the transformed box of an object is used.
-inline constexpr std::size_t kMostTrianglesTested = std::size_t{1} << 22;
+inline constexpr std::size_t kMaxTrianglesTested = std::size_t{1} << 22;
 
-/// True if bounding boxes of the scene's instances are computed from every triangle (kMostTrianglesTested).
-inline bool asks_every_triangle(const Assembly& assembly) {
-    return assembly.triangle_count() - assembly.static_geometry->triangles.size() <= kMostTrianglesTested;
+/// True if bounding boxes of the scene's instances are computed from every triangle (kMaxTrianglesTested).
+inline bool has_exact_boxes(const Assembly& assembly) {
+    return assembly.triangle_count() - assembly.static_geometry->triangles.size() <= kMaxTrianglesTested;
 }
 
-/// Bounding box of a scene in metres. Above kMostTrianglesTested instanced triangles it encloses the transformed boxes
+/// Bounding box of a scene in metres. Above kMaxTrianglesTested instanced triangles it encloses the transformed boxes
 /// of the objects, which are not tight for rotated instances.
 BoundingBox bounding_box(const Assembly& assembly);
 

@@ -34,15 +34,15 @@ REALCAM_INLINE std::uint32_t shadow_ray_number(std::uint32_t hash) {
 
 /// Number of a ray that decides deterministically: it stops at surfaces with an opacity of at least 0.5 and passes
 /// shadow catchers. A single ray that represents a whole pixel must not depend on chance.
-inline constexpr std::uint32_t kDecidedRay = 0;
+inline constexpr std::uint32_t kDeterministicRay = 0;
 
 /// True if the ray of this number stops at a hit on a mesh. Shadow rays pass shadow catchers, which so cast no shadows.
 REALCAM_INLINE bool stops_ray(const MeshView& mesh, Hit hit, std::uint32_t ray_number) {
     const Triangle& triangle = mesh.triangles[hit.triangle];
     const Material& material = mesh.materials[triangle.material];
     if (!material.has_holes()) return true;
-    if (material.only_shadows && ((ray_number & 1u) || ray_number == kDecidedRay)) return false;
-    if (ray_number == kDecidedRay) return opacity_at(mesh, triangle, hit) >= 0.5f;
+    if (material.only_shadows && ((ray_number & 1u) || ray_number == kDeterministicRay)) return false;
+    if (ray_number == kDeterministicRay) return opacity_at(mesh, triangle, hit) >= 0.5f;
     return unit_float(hash32(hash32(ray_number, hit.triangle), hit.instance)) < opacity_at(mesh, triangle, hit);
 }
 

@@ -228,11 +228,11 @@ struct LightKinds {
     KindProbabilities shares;  ///< from which the probabilities of the suns are computed
     float local_probability;  ///< all point and area lights together
     float environment_probability;  ///< 0 if it is not one of the choices
-    bool environment_is_apart;  ///< it has a sample of its own and is not one of the choices of the other sample
+    bool environment_is_separate;  ///< it has a sample of its own and is not one of the choices of the other sample
 
     /// Probability that one of the two light samples is taken from the environment.
     REALCAM_INLINE float environment_chance() const {
-        return select(environment_is_apart, 1.0f, environment_probability);
+        return select(environment_is_separate, 1.0f, environment_probability);
     }
 
     /// Probability of one sun. `normal`: of the receiver.
@@ -284,7 +284,7 @@ struct LightImportances {
 /// Importances at a receiver.
 REALCAM_ONE_COPY LightImportances light_importances(const SceneView& scene, LightReceiver receiver) {
     LightImportances importances;
-    if (scene.light_node_count > 0) importances.local = most_illuminance(scene.light_nodes[0], receiver);
+    if (scene.light_node_count > 0) importances.local = max_illuminance(scene.light_nodes[0], receiver);
     for (int i = 0; i < scene.sun_count; ++i) importances.suns += sun_importance(scene.suns[i], receiver.normal);
     return importances;
 }
@@ -344,10 +344,10 @@ struct LightPick {
 template <class Choose>
 REALCAM_INLINE LightPick pick_light_by(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds,
                                        int sample_index, Vec2f u, const Choose& choose) {
-    if (sample_index == 1) return {LightKind::environment, 0, kinds.environment_is_apart ? 1.0f : 0.0f, u};
+    if (sample_index == 1) return {LightKind::environment, 0, kinds.environment_is_separate ? 1.0f : 0.0f, u};
     float probability = kinds.local_probability;
     if (u.x < probability) {
-        const LightChoice chosen = choose(left_over(u.x, probability));
+        const LightChoice chosen = choose(remapped_random(u.x, probability));
         const std::int32_t area = chosen.light - scene.point_count;
         return {area < 0 ? LightKind::point : LightKind::area,
                 area < 0 ? chosen.light : area,
@@ -356,7 +356,7 @@ REALCAM_INLINE LightPick pick_light_by(const SceneView& scene, LightReceiver rec
     }
     u.x -= probability;
     probability = kinds.environment_probability;
-    if (u.x < probability) return {LightKind::environment, 0, probability, {left_over(u.x, probability), u.y}};
+    if (u.x < probability) return {LightKind::environment, 0, probability, {remapped_random(u.x, probability), u.y}};
     for (int i = 0; i < scene.sun_count; ++i) {
         u.x -= probability;
         probability = kinds.sun_probability(scene.suns[i], receiver.normal);

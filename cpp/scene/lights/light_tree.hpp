@@ -107,7 +107,7 @@ REALCAM_INLINE float light_importance(const LightNode& node, LightReceiver recei
 
 /// Upper bound of the unoccluded illuminance in lux from a node's lights, for a receiver outside their bounds; 0 if
 /// none of them can illuminate it.
-REALCAM_INLINE float most_illuminance(const LightNode& node, LightReceiver receiver) {
+REALCAM_INLINE float max_illuminance(const LightNode& node, LightReceiver receiver) {
     const NodeView seen(node, receiver);
     const auto positive = [](float v) { return select(v > 0.0f, v, 0.0f); };
     const float emitted = cosine_of_difference(cosine_of_difference(seen.cos_axis, node.cos_spread), seen.cos_bounds),
@@ -142,8 +142,8 @@ struct LightTreePath {
 
     /// Descends to one of the node's two children, whose indices are `node + 1` and `second`. Returns true for the
     /// first.
-    REALCAM_INLINE bool take_turn(const LightNode& first_child, const LightNode& second_child, std::int32_t second,
-                                  LightReceiver receiver) {
+    REALCAM_INLINE bool descend(const LightNode& first_child, const LightNode& second_child, std::int32_t second,
+                                LightReceiver receiver) {
         const float of_first = first_child_probability(first_child, second_child, receiver);
         const bool is_first = u < of_first;
         const float of_chosen = select(is_first, of_first, 1.0f - of_first);
@@ -163,12 +163,12 @@ struct LightTreePath {
             const bool is_first = u < leaf.first_probability;
             const float in_leaf = is_first ? leaf.first_probability : 1.0f - leaf.first_probability;
             return {is_first ? first : leaf.partner, probability * in_leaf,
-                    left_over(is_first ? u : u - leaf.first_probability, in_leaf)};
+                    remapped_random(is_first ? u : u - leaf.first_probability, in_leaf)};
         }
         const LeafLight* entry = &scene.leaf_lights[-2 - leaf.partner];
         while (entry[1].below <= u) ++entry;
         const float in_leaf = entry[1].below - entry->below;
-        return {entry->light, probability * in_leaf, left_over(u - entry->below, in_leaf)};
+        return {entry->light, probability * in_leaf, remapped_random(u - entry->below, in_leaf)};
     }
 };
 
@@ -178,7 +178,7 @@ REALCAM_INLINE LightChoice choose_light(const SceneView& scene, LightReceiver re
     LightTreePath path{u, seed};
     const LightNode* const nodes = scene.light_nodes;
     for (std::int32_t second; (second = nodes[path.node].second_child) > 0;)
-        path.take_turn(nodes[path.node + 1], nodes[second], second, receiver);
+        path.descend(nodes[path.node + 1], nodes[second], second, receiver);
     return path.choice(scene);
 }
 

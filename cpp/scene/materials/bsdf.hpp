@@ -88,12 +88,12 @@ public:
 
     REALCAM_INLINE bool is_opaque() const { return !(interface.weight > 0.0f); }
     /// Removes the Lambertian lobe.
-    REALCAM_INLINE void keep_narrow_lobes() {
+    REALCAM_INLINE void remove_diffuse_lobe() {
         diffuse = diffuse_ = lost_under_coat_ = {0, 0, 0};
         set_lobe_probabilities();
     }
     /// Removes all lobes except mirrors and smooth interfaces.
-    REALCAM_INLINE void keep_mirrors() {
+    REALCAM_INLINE void keep_delta_lobes() {
         diffuse = diffuse_ = phong = lost_under_coat_ = {0, 0, 0};
         if (!specular.is_smooth()) specular_weight = 0.0f;
         if (!coat.is_smooth()) coat_weight = 0.0f;
@@ -109,7 +109,7 @@ public:
         const Vec3f coat_light = coat_weight > 0.0f ? coat_rotation(light) : light;
         const float light_through_coat =
             coat_weight > 0.0f && coat_light.z > 0.0f ? through_coat(coat.facets_at(coat_light.z)) : 1.0f;
-        Color value = (kOneOverPi * light.z) * diffuse_;
+        Color value = (kInvPi * light.z) * diffuse_;
         if (is_layered_) value *= light_through_coat * transmitted_at(light.z);
         // Light of the narrow lobes passes the coat twice at about the same angle, and interreflections between coat
         // and base are not lost: so the transmittance of a single passage applies. If the two angles differ, the lower
@@ -130,7 +130,7 @@ public:
         const Vec3f light = frame.to_local(to_light);
         if (!is_possible(light, to_light)) return 0.0f;
         if (light.z < 0.0f) return lobe_probabilities_[kInterfaceLobe] * interface.pdf(eye, light);
-        float density = lobe_probabilities_[kDiffuseLobe] * kOneOverPi * light.z;
+        float density = lobe_probabilities_[kDiffuseLobe] * kInvPi * light.z;
         if (lobe_probabilities_[kPhongLobe] > 0.0f)
             density += lobe_probabilities_[kPhongLobe] * phong_pdf({-eye.x, -eye.y, eye.z}, shininess, light);
         if (lobe_probabilities_[kSpecularLobe] > 0.0f)
@@ -152,7 +152,7 @@ public:
         while (lobe < kCoatLobe && u.x >= lobe_probabilities_[lobe]) u.x -= lobe_probabilities_[lobe++];
         const float probability = lobe_probabilities_[lobe];
         if (!(probability > 0.0f)) return result;
-        u.x = left_over(u.x, probability);
+        u.x = remapped_random(u.x, probability);
         Vec3f light{0, 0, 1};
         switch (lobe) {
             case kDiffuseLobe: light = sample_cosine({0, 0, 1}, u); break;
@@ -223,7 +223,7 @@ private:
             white += p.weight * coat_loss(p.cosine, coat.alpha, specular.alpha);
         }
         const Color to_eye = (coat_weight * specular_weight) * lost_under_coat(eye.z);
-        lost_under_coat_ = kOneOverPi * to_eye / at_least((mean / white) * coloured, 1e-8f);
+        lost_under_coat_ = kInvPi * to_eye / at_least((mean / white) * coloured, 1e-8f);
         lost_to_eye_ = largest(to_eye);
     }
     /// Transmittance of the coat for a single passage, from its directional albedo for reflectance 1.

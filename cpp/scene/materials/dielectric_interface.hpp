@@ -192,7 +192,7 @@ private:
     REALCAM_INLINE float multiple_scattering(float light_z) const {
         if (!(total_loss > 1e-6f)) return 0.0f;
         const float cosine = std::fabs(light_z);
-        return (1.0f - albedo_at_eye) * loss_at(light_z < 0.0f, cosine) * kOneOverPi * cosine / total_loss;
+        return (1.0f - albedo_at_eye) * loss_at(light_z < 0.0f, cosine) * kInvPi * cosine / total_loss;
     }
 
     /// Side of the table for directions above or below the surface.

@@ -98,7 +98,7 @@ public:
         const Vec3f light = frame_.to_local(to_light);
         const bool is_possible = (light.z > 0.0f) & (dot(geometric_normal_, to_light) > 0.0f);
         // Directions below the surface must not index outside the tables.
-        const float cosine = select(is_possible, light.z, 1.0f), pdf = kOneOverPi * cosine;
+        const float cosine = select(is_possible, light.z, 1.0f), pdf = kInvPi * cosine;
         const GgxAlbedo to_light_facets = inlined_ggx_albedo(cosine, alpha_);
         const Color diffuse = pdf * diffuse_ * (grey(1.0f) - above_diffuse_.albedo(to_light_facets));
         const Vec3f h = normalized(eye_ + light);

@@ -88,7 +88,7 @@ private:
     /// Multiple scattering: BSDF times cosine. `to_light`: directional albedo at the light's cosine.
     REALCAM_INLINE Color multiple_scattering(float cosine, GgxAlbedo to_light) const {
         if (!(energy_loss > 1e-6f)) return {0, 0, 0};
-        return ((1.0f - to_eye.all) * (1.0f - to_light.all) * kOneOverPi * cosine / energy_loss) * reflectance.multiple;
+        return ((1.0f - to_eye.all) * (1.0f - to_light.all) * kInvPi * cosine / energy_loss) * reflectance.multiple;
     }
 };
 

@@ -27,15 +27,15 @@ public:
 
     REALCAM_INLINE bool is_opaque() const { return true; }
     /// Removes the Lambertian lobe.
-    REALCAM_INLINE void keep_narrow_lobes() { diffuse = {0, 0, 0}; }
+    REALCAM_INLINE void remove_diffuse_lobe() { diffuse = {0, 0, 0}; }
     /// Removes both lobes.
-    REALCAM_INLINE void keep_mirrors() { diffuse = phong = {0, 0, 0}; }
+    REALCAM_INLINE void keep_delta_lobes() { diffuse = phong = {0, 0, 0}; }
 
     /// BSDF times cosine. `light`: direction to the light, unit.
     REALCAM_INLINE Color eval(Vec3f light) const {
         const float cosine = dot(normal, light);
         if (!(cosine > 0.0f && dot(geometric_normal, light) > 0.0f)) return {0, 0, 0};
-        Color value = (kOneOverPi * cosine) * diffuse;
+        Color value = (kInvPi * cosine) * diffuse;
         if (!is_black(phong)) {
             const float density = phong_pdf(mirrored_at(normal, eye), shininess, light);
             value += ((shininess + 2.0f) / (shininess + 1.0f) * density * cosine) * phong;
@@ -58,7 +58,7 @@ public:
         if (is_black(diffuse) && is_black(phong)) return result;
         const float probability = diffuse_probability();
         const bool is_diffuse = u.x < probability;
-        u.x = is_diffuse ? left_over(u.x, probability) : left_over(u.x - probability, 1.0f - probability);
+        u.x = is_diffuse ? remapped_random(u.x, probability) : remapped_random(u.x - probability, 1.0f - probability);
         result.direction = is_diffuse ? sample_cosine(normal, u) : sample_phong(mirrored_at(normal, eye), shininess, u);
         result.pdf = pdf(result.direction);
         if (result.pdf > 0.0f) result.weight = (1.0f / result.pdf) * eval(result.direction);

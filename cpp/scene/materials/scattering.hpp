@@ -6,8 +6,6 @@ namespace REALCAM_NAMESPACE {
 
 // Fresnel terms and local frames that all BSDFs use.
 
-inline constexpr float kOneOverPi = 0.3183098862f;
-
 REALCAM_INLINE float fifth_power(float v) {
     const float v2 = v * v;
     return v2 * v2 * v;

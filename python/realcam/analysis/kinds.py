@@ -39,7 +39,7 @@ from .zernike import ZernikeFit, plot_zernike_fit, zernike_fit
 
 
 @dataclass(frozen=True)
-class Asked:
+class PlotArguments:
     """Arguments of a plot, with the ray bundles that plots share; None selects the plot's default.
 
     fields_deg: (F,); wavelengths_nm: (W,); frequencies_per_mm: (K,), periods per mm on the film.
@@ -100,7 +100,7 @@ class Kind:
 
     help: str  #: description of the plotted quantity in a few words, for the command line's help
     data: type  #: type of the result of `compute`
-    compute: Callable[[Asked], Any]
+    compute: Callable[[PlotArguments], Any]
     shape: Callable[[Any], tuple[int, int]]  #: number of rows and columns of axes for the data
     plot: Callable[[Any, np.ndarray], None]  #: plots the data on an array of axes of that shape
     square: bool = False  #: True if the axes are square
@@ -134,7 +134,7 @@ def _plot_bokeh(data: Any, axes: np.ndarray) -> None:
         plot_bokeh(data, axes[0, f], f)
 
 
-def _spots_through_focus(arguments: Asked) -> Any:
+def _spots_through_focus(arguments: PlotArguments) -> Any:
     """Spots on five planes, spaced by the diffraction-limited depth of focus, or by the geometric one if larger."""
     lens = arguments.lens
     step_mm = 2 * lens.wavelength_nm * 1e-6 * lens.first_order().f_number ** 2
@@ -147,7 +147,7 @@ def _spots_shape(data: Any) -> tuple[int, int]:
     return len(data.defocus_mm), len(data.fields_deg)
 
 
-def _mtf(arguments: Asked, compute: Callable[..., Any]) -> Any:
+def _mtf(arguments: PlotArguments, compute: Callable[..., Any]) -> Any:
     """Calls mtf_over_frequency, mtf_over_field or mtf_through_focus."""
     lens, keywords = arguments.lens, {**arguments.fields_and_wavelengths, "method": arguments.method or "diffraction"}
     if compute is mtf_over_field:
@@ -158,7 +158,7 @@ def _mtf(arguments: Asked, compute: Callable[..., Any]) -> Any:
     return compute(lens, highest_per_mm=highest, **keywords)
 
 
-def _with_bundles(arguments: Asked) -> dict[str, Any]:
+def _with_bundles(arguments: PlotArguments) -> dict[str, Any]:
     """Keyword arguments of analyses at one wavelength that take ray bundles."""
     return {**arguments.monochromatic, "bundles": arguments.bundles}
 
@@ -166,7 +166,7 @@ def _with_bundles(arguments: Asked) -> dict[str, Any]:
 def _map_of(quantity: str) -> Kind:
     """Kind of plot of one of field_map's QUANTITIES."""
 
-    def compute(arguments: Asked) -> FieldMap:
+    def compute(arguments: PlotArguments) -> FieldMap:
         frequency = arguments.frequency_per_mm()
         return field_map(arguments.lens, quantity, frequency_per_mm=frequency, **_with_bundles(arguments))
 
@@ -306,7 +306,7 @@ KINDS: dict[str, Kind] = {
 }
 
 
-def compute(kind: str, arguments: Asked) -> Any:
+def compute(kind: str, arguments: PlotArguments) -> Any:
     """Computes the data of a plot. Raises InputError for an unknown kind, and if the arguments do not apply to it."""
     if kind not in KINDS:
         raise InputError(f'unknown plot "{kind}"; expected one of {", ".join(KINDS)}')

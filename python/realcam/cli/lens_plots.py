@@ -112,7 +112,7 @@ def plot(
         lens_options.check_not_the_lens(target, name)
     lens = rings.set(file.lens(name))
     bundles = analysis.Bundles(lens, _distance(object_distance))
-    request = kinds.Asked(
+    request = kinds.PlotArguments(
         lens,
         bundles,
         _numbers(fields, "--fields-deg"),

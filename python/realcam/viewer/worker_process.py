@@ -80,7 +80,7 @@ class WorkerProcess:
             self._kill()
 
     def _started(self) -> tuple[Connection, bool]:
-        """Returns the connection to the process, and true if the process was started now and will send that it is ready.
+        """Returns the connection to the process, and true if it was started now and will send that it is ready.
 
         Raises WorkError after end().
         """

@@ -26,7 +26,7 @@ from .fit import CameraModelFit
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from .._core import _SettingWords
+    from .._core import _SettingsKwargs
 
 Array = NDArray[np.float64]
 Matrix = tuple[tuple[float, ...], ...]
@@ -188,7 +188,7 @@ class Rig:
         return replace(self, members=members)
 
     def shots(
-        self, scene: Scene, settings: RenderSettings | None = None, **changes: Unpack[_SettingWords]
+        self, scene: Scene, settings: RenderSettings | None = None, **changes: Unpack[_SettingsKwargs]
     ) -> dict[str, Shot]:
         """Returns one shot per camera, by name, for example for rc.Job. settings, changes: as for rc.render.
 
@@ -207,7 +207,7 @@ class Rig:
         settings: RenderSettings | None = None,
         *,
         device: str = "auto",
-        **changes: Unpack[_SettingWords],
+        **changes: Unpack[_SettingsKwargs],
     ) -> dict[str, Image]:
         """Renders the pictures of all cameras, as rc.render does, and returns them by name.
 

@@ -116,7 +116,7 @@ TEST_CASE("motion: both traversals meet the same, and what stands there at the t
     auto packets = both.packets();
     for (const double time : {0.0, 0.37, 1.0}) {
         CAPTURE(time);
-        const BothTraversals standing(standing_at(assembly, time));
+        const BothTraversals standing(frozen_at(assembly, time));
         constexpr int kLanes = 64, kBlocks = 300;
         int hits = 0, on_moving = 0, differ = 0, stands_elsewhere = 0, wrong_shadows = 0;
         double worst_normal = 0, worst_place = 0;
@@ -181,7 +181,7 @@ TEST_CASE("motion: lamps shine from where they are") {
     REQUIRE(view.point_count == 1);
     for (const float time : {0.0f, 0.3f, 1.0f}) {
         CAPTURE(time);
-        const RenderSpaceScene standing(standing_at(assembly, static_cast<double>(time)), {0, 0, 0});
+        const RenderSpaceScene standing(frozen_at(assembly, static_cast<double>(time)), {0, 0, 0});
         const SceneView still = standing.view();
         for (int i = 0; i < 200; ++i) {
             const LightReceiver receiver = {draw.in_cube(20), draw.direction(), time};

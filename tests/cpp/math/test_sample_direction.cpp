@@ -21,7 +21,7 @@ const Vec3f kNormals[] = {{0, 0, 1},
                           normalized(Vec3f{0.3f, -0.8f, 0.5f}),
                           normalized(Vec3f{1e-4f, 0, -1})};
 
-double turn_of(double x, double y) {
+double euler_rotation(double x, double y) {
     return std::atan2(y, x) / (2 * M_PI) + 0.5;
 }
 
@@ -39,7 +39,7 @@ Bins on_disc(Sampler&& sampler, unsigned seed) {
     for (int i = 0; i < kSamples; ++i) {
         const Vec2f p = sampler(uniform.pair());
         const double x = static_cast<double>(p.x), y = static_cast<double>(p.y);
-        bins.add(std::min(std::hypot(x, y), 1.0), turn_of(x, y));  // 2e-7 past the rim by rounding
+        bins.add(std::min(std::hypot(x, y), 1.0), euler_rotation(x, y));  // 2e-7 past the rim by rounding
     }
     return bins;
 }
@@ -58,7 +58,7 @@ Bins on_sphere(Sampler&& sampler, Pdf&& pdf, unsigned seed) {
     Uniform uniform(seed);
     for (int i = 0; i < kSamples; ++i) {
         const Vec3d d = static_cast<Vec3d>(sampler(uniform.pair()));
-        bins.add(std::clamp(d.z, -1.0, 1.0), turn_of(d.x, d.y));
+        bins.add(std::clamp(d.z, -1.0, 1.0), euler_rotation(d.x, d.y));
     }
     return bins;
 }
@@ -82,7 +82,7 @@ Bins about_axis(Vec3f axis, float exponent, Sampler&& sampler, unsigned seed) {
     Uniform uniform(seed);
     for (int i = 0; i < kSamples; ++i) {
         const Vec3d d = static_cast<Vec3d>(sampler(uniform.pair()));
-        bins.add(2 * std::asin(std::min(0.5 * length(normalized(d) - n), 1.0)), turn_of(dot(d, s), dot(d, t)));
+        bins.add(2 * std::asin(std::min(0.5 * length(normalized(d) - n), 1.0)), euler_rotation(dot(d, s), dot(d, t)));
     }
     return bins;
 }

@@ -28,8 +28,8 @@ REPORT_PAGES = ReportPlots.pages
 SMALL = {"spot-through-focus": {"fields_deg": np.array([0.0, 10.0])}}
 
 
-def asked(lens: rc.Lens = LENS, **given: object) -> kinds.Asked:
-    return kinds.Asked(lens, analysis.Bundles(lens), **given)  # type: ignore[arg-type]
+def asked(lens: rc.Lens = LENS, **given: object) -> kinds.PlotArguments:
+    return kinds.PlotArguments(lens, analysis.Bundles(lens), **given)  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")

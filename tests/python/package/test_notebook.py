@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 import realcam as rc
 from realcam.analysis import KINDS, Bundles, notebook
-from realcam.analysis.kinds import Asked
+from realcam.analysis.kinds import PlotArguments
 from realcam.drawing import lens_drawings
 
 from .picklable_values import image, plan
@@ -110,7 +110,7 @@ def test_a_fit_is_shown_as_a_table() -> None:
 
 @pytest.mark.parametrize("kind", ["ray-fan", "mtf", "mtf-field", "mtf-focus", "distortion", "seidel", "zernike"])
 def test_an_analysis_is_shown_as_its_plot(kind: str) -> None:
-    data = KINDS[kind].compute(Asked(LENS, Bundles(LENS)))
+    data = KINDS[kind].compute(PlotArguments(LENS, Bundles(LENS)))
     assert notebook.kind_of(data) == kind
     shown = picture_of(data._repr_png_())
     assert min(shown.shape[:2]) > 100

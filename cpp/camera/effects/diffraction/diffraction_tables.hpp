@@ -22,7 +22,7 @@ public:
 private:
     std::shared_ptr<const DirectLensPath> direct_path_;
     HalfTangentBins directions_;
-    std::vector<GhostEntry> entries_;
+    std::vector<GhostBounds> entries_;
 };
 
 /// Diffraction of a lens, prepared for rendering. Owns the memory of its view.

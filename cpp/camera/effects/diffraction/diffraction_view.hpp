@@ -78,12 +78,12 @@ REALCAM_INLINE float number_along_edge(Vec2f u, Vec2f v) {
     return remaining_bits(u.y, 0x1p16f) + 0x1p-8f * remaining_bits(v.y, 0x1p9f);
 }
 
-/// Square of the inner frequency of a ring of cells; rings are thin near the centre and kDiffractionThickness times as
-/// wide beyond.
+/// Square of the inner frequency of a ring of cells; rings are thin near the centre and kDiffractionMergedRings times
+/// as wide beyond.
 REALCAM_INLINE float ring_edge_squared(std::int32_t ring) {
-    const std::int32_t beyond = ring - kDiffractionThinRings;
+    const std::int32_t beyond = ring - kDiffractionUnmergedRings;
     const float f =
-        kDiffractionFineStep * static_cast<float>(ring + select(beyond > 0, (kDiffractionThickness - 1) * beyond, 0));
+        kDiffractionFineStep * static_cast<float>(ring + select(beyond > 0, (kDiffractionMergedRings - 1) * beyond, 0));
     return f * f;
 }
 
@@ -137,8 +137,9 @@ REALCAM_INLINE DiffractionKick draw_kick(const DiffractionView& view, Vec2f film
                    select(is_edge, kDiffractionEdges, kDiffractionCells), rescaled);
     const float side = select(v.y < 0.5f, 1.0f, -1.0f), position = remaining_bits(v.y, 2.0f);
     const Vec2f in_cell = cell_frequency(select(is_edge, 0, drawn), {v.x, position});
-    const Vec2f from_edge = edge_frequency(view.edges[at * kDiffractionEdges + select(is_edge, drawn, 0)],
-                                           quotient(kDiffractionReach, 1.0f - v.x), position, number_along_edge(u, v));
+    const Vec2f from_edge =
+        edge_frequency(view.edges[at * kDiffractionEdges + select(is_edge, drawn, 0)],
+                       quotient(kDiffractionMaxFrequency, 1.0f - v.x), position, number_along_edge(u, v));
     const float scale = side * node.mm_per_nm;
     const Vec2f kick = {scale * select(is_edge, from_edge.x, in_cell.x),
                         scale * select(is_edge, from_edge.y, in_cell.y)};
@@ -160,14 +161,14 @@ REALCAM_INLINE EdgeKick draw_edge_kick(const DiffractionView& view, Vec2f film, 
     const DiffractionNode& node = view.nodes[at];
     const std::int32_t edge = draw_entry(view.entries, at * kDiffractionEntries, kDiffractionEdges, u.x);
     const float largest = quotient(2.0f * view.largest_radius, node.mm_per_nm * nm);
-    const float range =
-        std::log(quotient(largest > kDiffractionReach ? largest : kDiffractionReach, kDiffractionReach));
+    const float range = std::log(
+        quotient(largest > kDiffractionMaxFrequency ? largest : kDiffractionMaxFrequency, kDiffractionMaxFrequency));
     const float ratio = std::exp(v.x * range);
     const float side = select(v.y < 0.5f, 1.0f, -1.0f), scale = side * node.mm_per_nm;
     // Squaring the distance to the nearer end makes small distances more frequent; the derivative is the weight.
     const float along = number_along_edge(u, v), left = 2.0f * select(along < 0.5f, along, 1.0f - along);
     const float tail = 0.5f * left * left;
-    const Vec2f from_edge = edge_frequency(view.edges[at * kDiffractionEdges + edge], kDiffractionReach * ratio,
+    const Vec2f from_edge = edge_frequency(view.edges[at * kDiffractionEdges + edge], kDiffractionMaxFrequency * ratio,
                                            remaining_bits(v.y, 2.0f), select(along < 0.5f, tail, 1.0f - tail));
     return {rotated_to_azimuth(film, view.azimuths, {scale * from_edge.x, scale * from_edge.y}),
             2.0f * left * node.edge_share * range / ratio};

@@ -59,7 +59,7 @@ struct DispersionView {
     WavelengthVariable variable;
     const IndexCubic *to_scene, *to_film;  ///< for each of the lens's surfaces, in the order in which light meets them
     const SurfaceView<float>* film_surfaces;  ///< the lens's surfaces for light towards the film
-    FreeParts<float> film_free;  ///< data of film_surfaces for LensKind::any
+    AsymmetricParts<float> film_free;  ///< data of film_surfaces for LensKind::any
     SampleSharing sharing{};
     float film[9]{};  ///< mean of the cells' matrices
     float white_scale[3] = {1, 1, 1};  ///< inverse of the film colour of white through the filter; 0 if it is dark

@@ -34,12 +34,12 @@ GhostTables::GhostTables(const LensSystem& lens, double film_radius, const Ghost
     std::vector<AxialPair> pairs;
     // With a spectrum, shares are averaged over it: a coating that suppresses light at the design wavelength reflects
     // at another.
-    std::vector<AxialShares> transmittances;
+    std::vector<AxialTransmittance> transmittances;
     for (const double wavelength : spectrum ? spectrum->even_wavelengths() : std::vector{lens_with_film.wavelength_nm})
         transmittances.emplace_back(lens_with_film, wavelength);
     const auto axial_share = [&](const std::vector<Crossing>& crossings) {
         double sum = 0;
-        for (const AxialShares& transmittance : transmittances) sum += transmittance(crossings);
+        for (const AxialTransmittance& transmittance : transmittances) sum += transmittance(crossings);
         return sum / static_cast<double>(transmittances.size());
     };
     const auto add_candidates = [&](const std::vector<GhostPair>& candidates) {
@@ -79,7 +79,7 @@ void GhostTables::find_lens_paths(const EntrancePupilSearch<Map>& search, const 
     set_maps(directions, search.map());
     entry_reach_ = entry_reach(lens);
     exit_reach_ = static_cast<float>(search.map().rear_reach);
-    const auto append = [](std::vector<GhostEntry>& to, const std::vector<GhostEntry>& entries) {
+    const auto append = [](std::vector<GhostBounds>& to, const std::vector<GhostBounds>& entries) {
         to.insert(to.end(), entries.begin(), entries.end());
     };
     for (std::size_t k = 0; k < pairs.size(); ++k) {

@@ -41,7 +41,7 @@ private:
     /// Optical paths of all ghosts, for light towards the film or from the film to the scene.
     struct LensPaths {
         std::vector<GhostLensPath> paths;
-        std::vector<GhostEntry> entries;
+        std::vector<GhostBounds> entries;
         std::vector<SurfaceView<float>> surfaces;
         // One element for each crossing of all paths, or empty:
         std::vector<FrameChanges<float>> frames;
@@ -57,7 +57,7 @@ private:
                       const GhostGrid& grid) const;
 
     /// A pair whose ghost may be bright enough, and the product of its surfaces' axial reflectances and transmittances
-    /// (AxialShares).
+    /// (AxialTransmittance).
     struct AxialPair {
         GhostPair pair;
         double share;

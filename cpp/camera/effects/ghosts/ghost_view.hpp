@@ -30,7 +30,7 @@ inline constexpr int kGhostBins = 64;
 /// light through the front vertex, mm. Also the bounds, in the plane of the last vertex, of light that reaches one film
 /// point. Its x points away from the axis; for a lens without rotational symmetry, the axes are those of light_axes, or
 /// of the plane z = 0 of the film's frame.
-struct GhostEntry {
+struct GhostBounds {
     float low, high;  ///< in x
     float half_width;  ///< half the size in y; 0: empty
     float across;  ///< y of the centre; 0 for a rotationally symmetric lens
@@ -86,7 +86,7 @@ enum class GhostLight : std::int32_t {
 };
 
 /// Largest number of GhostViews of a picture.
-inline constexpr int kMostSplats = 4;
+inline constexpr int kMaxGhostViews = 4;
 
 /// Ghosts of a lens; or its direct path, for starbursts and for the lights themselves. Lengths in mm.
 struct GhostView {
@@ -96,7 +96,7 @@ struct GhostView {
     const GhostLensPath* paths;
     int path_count;
     const float* cdf;  ///< cumulative probabilities of the paths: path_count + 1 elements from 0 to 1
-    const GhostEntry* entries;  ///< kGhostBins for each path, or kGhostCells without rotational symmetry
+    const GhostBounds* entries;  ///< kGhostBins for each path, or kGhostCells without rotational symmetry
     int crossing_count;  ///< number of crossings of all paths; each of the next four arrays has one element for each
     const SurfaceView<float>* surfaces;
     const GhostCoating<kOneWavelengthTerms>* coatings;  ///< null if samples have wavelengths or no light is lost
@@ -110,7 +110,7 @@ struct GhostView {
     Iris<float> iris;
     LensKind kind;  ///< LensKind::any: `grid` replaces largest_half_tangent and film_radius
     GhostGrid grid;  ///< cells of half_tangents, or of film points in mm
-    FreeParts<float> free;  ///< data of lenses without rotational symmetry, by crossing
+    AsymmetricParts<float> free;  ///< data of lenses without rotational symmetry, by crossing
 };
 
 /// Returns the view with every array replaced by a copy; `copy(pointer, count)` returns the address of the copy.

@@ -504,7 +504,7 @@ private:
             private_wavelengths_nm_.clear();
             for (std::size_t i = 1; i < words.size(); ++i) {
                 std::string_view rest = words[i].text;
-                private_wavelengths_nm_.push_back(take_number(rest).value_or(0));
+                private_wavelengths_nm_.push_back(consume_number(rest).value_or(0));
             }
         } else {
             private_glass_errors_.erase(word);
@@ -594,12 +594,12 @@ private:
         const PrescriptionSurface image = p_.surfaces.back();
         p_.surfaces.erase(p_.surfaces.begin());
         p_.surfaces.pop_back();
-        if (image.conic != 0 || !image.aspheric.empty() || !image.form.is_none())
+        if (image.conic != 0 || !image.aspheric.empty() || !image.form.adds_nothing())
             add_unsupported("an image surface that is not a sphere", image.line, image.number);
         p_.defocus = image.thickness;
         p_.image_semi_diameter = image.clear_semi_diameter;
         p_.image_curvature = image.curvature;
-        p_.image_placement = SurfacePlacement::of(image.before);
+        p_.image_placement = SurfacePlacement::from_frame(image.before);
         if (p_.surfaces.empty()) fail_at("has no surface between object and image");
         if (p_.aperture_kind == ApertureKind::entrance_pupil_diameter) p_.aperture *= unit_;
         finish_fields();

@@ -53,7 +53,7 @@ private:
         SurfacePlacement placement = s.placement;
         if (constant != 0) {
             // CODE V's polynomials have no constant term; the surface alone is displaced by it instead.
-            placement = SurfacePlacement::of(placement.frame() * along_axis(constant));
+            placement = SurfacePlacement::from_frame(placement.frame() * along_axis(constant));
             placement.returns = s.placement.returns || s.placement.is_in_place();
         }
         std::string text = "S " + exact_number(s.bends_light() ? s.curvature : 0.0) + ' ' +

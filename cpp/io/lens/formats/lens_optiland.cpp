@@ -80,7 +80,7 @@ private:
             row.before = without_z(frames_[i]);
             if (!(row.before == Affine<double>{})) row.behind = inverse_motion(row.before);
         }
-        p_.image_placement = SurfacePlacement::of(without_z(frames_.back()));
+        p_.image_placement = SurfacePlacement::from_frame(without_z(frames_.back()));
     }
 
     /// Sets the transforms and thicknesses so that the axis leads from each vertex to the next.

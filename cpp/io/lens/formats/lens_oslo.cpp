@@ -296,7 +296,7 @@ private:
         medium.line = lines_.number();
         const auto is_number = [&](std::size_t i) {
             std::string_view rest = i < c.size() ? c[i].text : "";
-            return take_number(rest) && rest.empty();
+            return consume_number(rest) && rest.empty();
         };
         const bool is_model = c.upper(0, 4) == "MOD", is_code = c.size() == 1 && glass_of_number(c[0].text);
         if (!is_model && (!is_number(0) || is_code)) {

@@ -59,7 +59,7 @@ public:
         read_profile(attributes(last), image);
         read_placement(attributes(last)["decenter"], image);
         p_.image_curvature = image.curvature;
-        p_.image_placement = SurfacePlacement::of(image.before);
+        p_.image_placement = SurfacePlacement::from_frame(image.before);
         surface_ = 0;
         read_specification(attributes(model["optical_spec"]));
         return std::move(p_);

@@ -134,7 +134,7 @@ private:
             for (std::size_t k = 0; k < terms.size(); ++k)
                 lines.push_back(numbers("XDAT", {static_cast<double>(k + 3), terms[k]}));
         };
-        if (form.is_none()) {
+        if (form.adds_nothing()) {
             if (!s.is_asphere()) return "STANDARD";
             // Parameter 1 is the term of r^2; there are eight, up to r^16.
             lines.emplace_back("PARM 1 0");

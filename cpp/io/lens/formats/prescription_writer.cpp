@@ -105,7 +105,7 @@ std::map<int, double> radial_terms_of(const Surface& surface) {
 
 std::string beyond_polynomials(const SurfaceForm& form) {
     std::string found;
-    over_terms(form, [&](const auto& terms) {
+    for_each_present_terms(form, [&](const auto& terms) {
         if (found.empty()) found = terms.beyond_polynomials();
     });
     return found;

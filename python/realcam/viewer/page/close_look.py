@@ -63,7 +63,7 @@ def plot_svg(request: PlotRequest) -> str:
     if request.kind in _SINGLE_FIELD_PLOTS:
         fields = np.array([angle_of_height(request.lens, request.height_mm)[0]])
     bundles = Bundles(request.lens)
-    data = kinds.compute(request.kind, kinds.Asked(request.lens, bundles, fields))
+    data = kinds.compute(request.kind, kinds.PlotArguments(request.lens, bundles, fields))
     figure = analysis.plot_figure(request.kind, data, size="small")
     content = io.StringIO()
     figure.savefig(content, format="svg", facecolor="none", transparent=True)

@@ -90,7 +90,7 @@ TEST_CASE("an aimed ray meets its place") {
     for (const std::string& name : centred_lens_names()) {
         const LensSystem lens = io::read_lens(name);
         const LensPath<double> path(lens, LightDirection::to_film, lens.wavelength_nm);
-        const double radius = stop_reach(lens);
+        const double radius = stop_bounding_radius(lens);
         for (const double share : {0.0, 0.5, 1.0}) {
             const RayAimer aim(lens, lens.wavelength_nm, {share * half_field(lens)});
             for (const PupilPoint& p : hexapolar(12)) {
@@ -115,7 +115,7 @@ int passing(int blades, double field, double share) {
         if (s.type != SurfaceType::stop && s.curvature != 0) s.clear_semi_diameter = 0.99 / std::fabs(s.curvature);
     lens.iris.blades = blades;
     if (blades > 0) lens.stop_semi_diameter *= 0.5;
-    const double reach = share * stop_reach(lens);
+    const double reach = share * stop_bounding_radius(lens);
     const RayAimer aim(lens, lens.wavelength_nm, {field});
     int count = 0;
     for (int i = 0; i < 210; ++i) {
@@ -160,7 +160,8 @@ TEST_CASE("rays that are aimed together are those that are aimed one by one") {
         CAPTURE(lens.name);
         CAPTURE(angle);
         const RayAimer aim(lens, lens.wavelength_nm, {angle});
-        const double reach = stop_reach(lens), pupil = first_order(lens, lens.wavelength_nm).entrance_pupil_diameter;
+        const double reach = stop_bounding_radius(lens),
+                     pupil = first_order(lens, lens.wavelength_nm).entrance_pupil_diameter;
         std::vector<AimedRay> alone;
         for (const PupilPoint& p : pattern) alone.push_back(aim({reach * p.x, reach * p.y}));
         tried += alone.size();

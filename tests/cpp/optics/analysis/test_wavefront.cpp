@@ -60,7 +60,7 @@ TEST_CASE("optical path differences and ray aberrations of the CODE V double Gau
             rays.status[0] = 0;
             trace_lens(to_stop, rays, PathRecord<double, 1>{});
             REQUIRE(rays.status[0] == 0);
-            const double radius = stop_reach(lens);
+            const double radius = stop_bounding_radius(lens);
             places.push_back({rays.origin.x[0] / radius, rays.origin.y[0] / radius, 1});
         }
         const Wavefront w = wavefront(lens, point, places);

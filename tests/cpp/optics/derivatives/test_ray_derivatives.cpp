@@ -46,7 +46,7 @@ LensSystem changed(LensSystem lens, const LensVariable& v, double step) {
         case LensQuantity::xy: s.form.xy.push_back({v.number, v.number_y, step}); break;
         case LensQuantity::terms: {
             int row = 0;
-            over_rows(s.form, [&](auto& terms) {
+            for_each_kind_of_terms(s.form, [&](auto& terms) {
                 if (row++ == v.row) term(terms->coefficients, number - terms->words.first_number) += step;
             });
             break;

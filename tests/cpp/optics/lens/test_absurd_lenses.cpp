@@ -123,7 +123,7 @@ void try_all(const LensSystem& lens, Outcomes& outcomes) {
     for (const double angle : {0.0, 0.3, 1.4})
         outcomes.take("aimed rays", [&] {
             const RayAimer aim(lens, lens.wavelength_nm, {angle, kInfinity});
-            const AimedRay ray = aim({0.5 * stop_reach(lens), 0});
+            const AimedRay ray = aim({0.5 * stop_bounding_radius(lens), 0});
             return ray.status != RayStatus::ok || std::isfinite(length(ray.origin) + ray.path);
         });
 }

@@ -76,7 +76,7 @@ TEST_CASE("a superconic's sag satisfies its equation, and so does what is traced
 
 TEST_CASE("a superconic without terms is its conic, and turns and scales as a surface does") {
     const Surface plain = superconic(1 / 40.0, -0.5, {0, 0});
-    CHECK(plain.form.is_none());
+    CHECK(plain.form.adds_nothing());
     Surface surface = some_superconics().back(), turned = surface, scaled = surface;
     turned.curvature = -surface.curvature;
     turned.form = surface.form.negated();

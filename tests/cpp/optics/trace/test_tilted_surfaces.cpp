@@ -52,7 +52,7 @@ TEST_CASE("a placement is found again from its frame, also where two of its axes
         CAPTURE(tilt.x);
         CAPTURE(tilt.y);
         const Affine<double> frame = SurfacePlacement{{1, -2, 3}, tilt, false}.frame();
-        const Affine<double> again = SurfacePlacement::of(frame).frame();
+        const Affine<double> again = SurfacePlacement::from_frame(frame).frame();
         for (const auto axis : {&Affine<double>::x, &Affine<double>::y, &Affine<double>::z})
             CHECK(length(frame.*axis - again.*axis) < 1e-14);
         CHECK(again.origin == frame.origin);

@@ -204,7 +204,7 @@ TEST_CASE("one half of a tile decides upon the other, within all caps") {
     const ReachedNoise reached = tiles.reached();
     CHECK_FALSE(reached.is_reached);
     CHECK(reached.noise == doctest::Approx(0.5 / 1.5));
-    CHECK(reached.samples_wanted == doctest::Approx(16 * std::pow(0.5 / 1.5 / 0.01, 2) / 0.8));
+    CHECK(reached.samples_required == doctest::Approx(16 * std::pow(0.5 / 1.5 / 0.01, 2) / 0.8));
     // Half of what all pixels together want.
     CHECK(tiles.next(128 * 4 / 2)[1] == 2);
     CHECK(tiles.next(-1)[1] == 0);  // no time is left
@@ -214,7 +214,7 @@ TEST_CASE("one half of a tile decides upon the other, within all caps") {
 TEST_CASE("goals that are none are refused") {
     CHECK_THROWS_AS(validate(NoiseGoal{.noise = 0}), InputError);
     CHECK_THROWS_AS(validate(NoiseGoal{.noise = std::nan("")}), InputError);
-    CHECK_THROWS_AS(validate(NoiseGoal{.most_samples = 0}), InputError);
+    CHECK_THROWS_AS(validate(NoiseGoal{.max_samples = 0}), InputError);
     CHECK_THROWS_AS(validate(NoiseGoal{.seconds = -1}), InputError);
     CHECK_THROWS_AS(goal_of({0.01, 1, {}, {}}), InputError);
     CHECK(goal_of({0.01, {}, {}, {}}).unit == NoiseUnit::relative);

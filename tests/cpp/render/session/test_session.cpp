@@ -209,7 +209,7 @@ TEST_CASE("samples go on where the last ended, also after a stop; a failure begi
     CHECK(session.taken.back().count == 5);
     CHECK(session.sample_counts().counts == std::vector<std::int64_t>{12});
 
-    session.cancel(Collected::drop);
+    session.cancel(OnCancel::drop);
     CHECK_THROWS_WITH_AS(session.picture(), "there is no picture yet; it needs samples first", InputError);
     CHECK(session.sample_counts().counts == std::vector<std::int64_t>{0});
     session.add(1);
@@ -371,18 +371,18 @@ TEST_CASE("parts of a picture are exposed apart from it, in steps that whole pic
     camera.film.width = 5;
     camera.film.height = 4;
     NotedSession session;
-    CHECK_THROWS_WITH_AS(session.expose_region({0, 0, 1, 1}, 0, 1),
+    CHECK_THROWS_WITH_AS(session.sample_region({0, 0, 1, 1}, 0, 1),
                          "there is no scene to photograph yet; set() sets scene, camera and settings", InputError);
     RenderSettings settings{.seed = 9, .effects = {}};
     session.set(scene, camera, settings);
     session.add(3);
     session.notes.clear();
-    CHECK(session.expose_region({3, 1, 2, 3}, 256, 44).pixels.size() == 6);
+    CHECK(session.sample_region({3, 1, 2, 3}, 256, 44).pixels.size() == 6);
     CHECK(session.taken.back().seed == 9);
     CHECK(session.taken.back().first == 256);
     CHECK(session.taken.back().count == 44);
-    CHECK(session.see_region({3, 1, 2, 3}, 0, 256).size() == 6);
-    CHECK(session.expose_splats(0, 0).empty());
+    CHECK(session.layer_sums_of_region({3, 1, 2, 3}, 0, 256).size() == 6);
+    CHECK(session.sample_splats(0, 0).empty());
     CHECK(session.notes == std::vector<std::string>{"take region", "see layers", "take splats"});
     CHECK(session.picture().spp == 3);
 
@@ -394,17 +394,17 @@ TEST_CASE("parts of a picture are exposed apart from it, in steps that whole pic
                                     {0, 0, 0, 2},
                                     {0, 0, 2147483647, 2},
                                     {2147483647, 0, 2147483647, 1}}) {
-        CHECK_THROWS_WITH_AS(session.expose_region(region, 0, 1), kOutside, InputError);
-        CHECK_THROWS_WITH_AS(session.see_region(region, 0, 1), kOutside, InputError);
+        CHECK_THROWS_WITH_AS(session.sample_region(region, 0, 1), kOutside, InputError);
+        CHECK_THROWS_WITH_AS(session.layer_sums_of_region(region, 0, 1), kOutside, InputError);
     }
-    CHECK_THROWS_AS(session.expose_region({0, 0, 1, 1}, 0, 257), InputError);
-    CHECK_THROWS_AS(session.expose_region({0, 0, 1, 1}, -1, 1), InputError);
-    CHECK_THROWS_AS(session.expose_region({0, 0, 1, 1}, std::int64_t{1} << 32, 1), InputError);
-    CHECK_THROWS_AS(session.expose_region({0, 0, 1, 1}, 0, 2, {1, 1}), InputError);
+    CHECK_THROWS_AS(session.sample_region({0, 0, 1, 1}, 0, 257), InputError);
+    CHECK_THROWS_AS(session.sample_region({0, 0, 1, 1}, -1, 1), InputError);
+    CHECK_THROWS_AS(session.sample_region({0, 0, 1, 1}, std::int64_t{1} << 32, 1), InputError);
+    CHECK_THROWS_AS(session.sample_region({0, 0, 1, 1}, 0, 2, {1, 1}), InputError);
     CHECK_THROWS_AS(session.picture_of({FilmSums(19), {}, {}, {}}), InputError);
     settings.pupil_sampling = PupilSampling::pixel;
     session.set(scene, camera, settings);
-    CHECK_THROWS_AS(session.expose_region({0, 0, 1, 1}, 0, 1), InputError);
+    CHECK_THROWS_AS(session.sample_region({0, 0, 1, 1}, 0, 1), InputError);
 }
 
 TEST_CASE("a part that is stopped is no part, and the session goes on") {
@@ -413,9 +413,9 @@ TEST_CASE("a part that is stopped is no part, and the session goes on") {
     session.while_taking = [&] {
         while (!session.stop_flag) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     };
-    CHECK_THROWS_AS(session.expose_region({0, 0, 1, 1}, 0, 1, {}, [](double) { return false; }), Cancelled);
+    CHECK_THROWS_AS(session.sample_region({0, 0, 1, 1}, 0, 1, {}, [](double) { return false; }), Cancelled);
     session.while_taking = {};
-    CHECK(session.expose_region({0, 0, 1, 1}, 0, 1).pixels.size() == 1);
+    CHECK(session.sample_region({0, 0, 1, 1}, 0, 1).pixels.size() == 1);
 }
 
 TEST_CASE("a picture is developed of what was collected elsewhere") {

@@ -214,7 +214,7 @@ TEST_CASE("a lamp's importance is its illuminance, and its bound above that") {
         // As if it were a ball, whose silhouette is a quarter of the area, sqrt(3). Its own are from sqrt(2) to 2.
         const double of_ball = static_cast<double>(luminance(view.areas[0].radiance)) * std::sqrt(3.0) / 900;
         CHECK(std::fabs(static_cast<double>(light_importance(all, receiver)) - illuminance) < 0.22 * of_ball);
-        CHECK(static_cast<double>(most_illuminance(all, receiver)) >= illuminance);
+        CHECK(static_cast<double>(max_illuminance(all, receiver)) >= illuminance);
     }
 }
 
@@ -386,7 +386,7 @@ void check_kinds(ChiSquareTests& tests, const SceneView& view, LightReceiver rec
                             static_cast<double>(kinds.sun_probability(view.suns[1], receiver.normal)),
                             static_cast<double>(kinds.environment_probability)};
     CHECK(share[0] + share[1] + share[2] + share[3] == doctest::Approx(1).epsilon(1e-6));
-    CHECK((share[3] > 0) != kinds.environment_is_apart);
+    CHECK((share[3] > 0) != kinds.environment_is_separate);
     std::vector<double> expected, counts(4);
     for (const double s : share) expected.push_back(s * kSamples);
     Uniform uniform(seed);
@@ -399,7 +399,7 @@ void check_kinds(ChiSquareTests& tests, const SceneView& view, LightReceiver rec
     tests.add(expected, counts);
     const LightPick second = pick_light(view, receiver, kinds, 1, {0.5f, 0.5f}, 1);
     CHECK(second.kind == LightKind::environment);
-    CHECK(second.probability == (kinds.environment_is_apart ? 1.0f : 0.0f));
+    CHECK(second.probability == (kinds.environment_is_separate ? 1.0f : 0.0f));
 }
 
 }  // namespace
@@ -418,7 +418,7 @@ TEST_CASE("kinds of light are chosen with the probabilities of LightKinds, which
             const LightReceiver receiver{{0.2f, 0, 0.1f}, normal};
             const LightKinds kinds = light_kinds(view, SkySampling::apart, receiver);
             // A dim sky is all the light of what is turned away from the others.
-            CHECK((!kinds.environment_is_apart || sky == 1.0f || normal.y < 0));
+            CHECK((!kinds.environment_is_separate || sky == 1.0f || normal.y < 0));
             check_kinds(tests, view, receiver, kinds, seed++);
             check_kinds(tests, view, receiver, light_kinds(view, SkySampling::chosen, receiver), seed++);
         }

@@ -81,7 +81,7 @@ TEST_CASE("a circle's light within each ring is Airy's") {
     const ApertureDiffraction found = diffraction_of({outline(0)});
     double worst = 0;
     int darkest = 0;
-    for (int rings = 1; rings <= kDiffractionThinRings; ++rings) {
+    for (int rings = 1; rings <= kDiffractionUnmergedRings; ++rings) {
         worst = std::max(worst, std::fabs(share_within(found, rings) - airy_share(rings / 24.0)));
         const auto light = [&](int k) { return share_within(found, k + 1) - share_within(found, k); };
         if (rings < 40 && light(rings) < light(darkest)) darkest = rings;
