@@ -56,7 +56,8 @@ std::string settings_digest(const shot::ShotRequest& request, const Camera& came
          << s.effects.is_automatic << ' ' << s.effects.named << ' ' << s.effects.ghost_share << ' '
          << s.effects.film_reflectance << ' ' << static_cast<int>(s.pupil_sampling) << ' '
          << static_cast<int>(s.light_tracing) << ' ' << static_cast<int>(request.tone) << ' ' << request.denoises << ' '
-         << request.meters_exposure_time() << ' ' << request.iso_follows_s.value_or(-1);
+         << request.meters_exposure_time() << ' ' << request.iso_follows_s.value_or(-1) << ' '
+         << request.environment_layer;
     for (std::size_t i = 0; i < kLayers.size(); ++i) text << ' ' << s.layers.has(static_cast<Layer>(i));
     if (s.noise)
         text << ' ' << s.noise->noise << ' ' << static_cast<int>(s.noise->unit) << ' ' << s.noise->max_samples << ' '

@@ -87,7 +87,9 @@ def plot(
     ] = None,
     object_distance: ObjectDistance = None,
     theme: lens_options.ThemeName = "light",
-    size: Annotated[str, typer.Option("--size", metavar="NAME", help="Size of the plot: small or large")] = "large",
+    size: Annotated[
+        str, typer.Option("--figure-size", metavar="NAME", help="Size of the plot: small or large")
+    ] = "large",
     as_json: Annotated[bool, typer.Option("--json", help="Print the numbers as JSON")] = False,
     quiet: options.Quiet = False,
 ) -> None:

@@ -185,3 +185,8 @@ def test_without_sto_the_first_surface_is_the_stop(tmp_path):
     path.write_text(HEAD + "S 50 4 600.400\nS -50 40\nSI 0 0\nGO\n")
     with pytest.warns(UserWarning, match="specifies no aperture stop"):
         assert rc.Lens.load(path).stop_index == 0
+
+
+def test_glass_that_is_set_to_air_again_is_air(tmp_path: Path) -> None:
+    lens = code_v(tmp_path, STOP, "S 50 4 600.400\nCIR 12", "S -40 3 700.300\nCIR 12\nGLA AIR", "S 0 60\nCIR 12")
+    assert lens.surfaces[2].material.index(587.6) == pytest.approx(1, abs=1e-9)

@@ -554,7 +554,11 @@ private:
     /// Sets the medium behind a surface, or makes it a mirror. `text`: REFL, AIR, a glass code or the name of a glass.
     void set_glass(PrescriptionSurface& row, std::string_view text) {
         const std::string name = upper_case(text);
-        if (name == "REFR" || name == "AIR") return;
+        if (name == "REFR") return;
+        if (name == "AIR") {
+            row.material = Glass::air();
+            return;
+        }
         if (name == "REFL") {
             row.is_mirror = true;
             return;
