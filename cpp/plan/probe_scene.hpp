@@ -167,7 +167,7 @@ inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera ca
                              camera_from_scene, facts);
     for (const SunLight& sun : scene.static_geometry->suns)
         add_light(camera_from_scene, -static_cast<Vec3d>(sun.direction), luminance_of(sun.illuminance), 0, true, facts);
-    for (SeenLight& light : facts.lights) light.illuminance_lux *= settings.filter_transmittance();
+    for (VisibleLight& light : facts.lights) light.illuminance_lux *= settings.filter_transmittance();
     facts.surroundings = wide_view(session, scene, camera, settings, progress);
     settings.layers = {Layer::depth_middle};
     remove_hidden_lights(session, scene, camera, settings, scene_from_camera, facts.lights);
