@@ -38,7 +38,9 @@ class Field:
 
     angle_deg: float  #: field angle in object space, as in Lens.spot
     film_height_mm: float  #: height of the chief ray at the design wavelength
-    share: float | None  #: fraction of the largest illuminated height; None if chosen by angle
+    share: (
+        float | None
+    )  #: requested fraction of the film's corner or side, or of the illuminated height; None: by angle
 
 
 def fields_at(lens: Lens, shares: Sequence[float], object_distance_m: float | None = None) -> tuple[Field, ...]:

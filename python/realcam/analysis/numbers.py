@@ -39,7 +39,11 @@ def as_csv(data: Any) -> str:
 
 
 def save_numbers(data: Any, path: str | os.PathLike[str]) -> None:
-    """Writes a result as .json or .csv, completely or not at all. Raises ImageFileError."""
+    """Writes a result as .json or .csv, completely or not at all.
+
+    Raises ImageFileError for another suffix or a file that cannot be written, and InputError for data without a form
+    in the format.
+    """
     target = files.check_target(path, FORMATS)
     text = as_json(data) + "\n" if target.suffix.lower() == ".json" else as_csv(data)
     files.write_whole(target, text.encode())

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from .._core import Plan, effects
 
-#: Effects with a switch: those that are not always simulated.
+#: Effects with a switch: those that are off by default.
 EFFECTS = tuple(effect.name for effect in effects() if not effect.is_on)
 #: Effects that any camera model can simulate; the others need the surfaces of the lens.
 _EFFECTS_OF_ANY_MODEL = {effect.name for effect in effects() if not effect.needs_full_lens}
