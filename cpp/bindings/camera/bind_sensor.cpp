@@ -165,7 +165,7 @@ py::array_t<double> matrix_array(const SensorMatrix& m) {
     return array_from(std::vector<double>(m.begin(), m.end()), {3, 3});
 }
 
-Sensor with_changes(Sensor sensor, const std::optional<std::string>& name, std::optional<double> pixel_pitch_um,
+Sensor changed_sensor(Sensor sensor, const std::optional<std::string>& name, std::optional<double> pixel_pitch_um,
                     const std::optional<std::pair<int, int>>& resolution,
                     const std::optional<std::string>& color_filter_array, const std::optional<Rows>& quantum_efficiency,
                     const std::optional<Rows>& cover_glass, const std::optional<Rows>& angular_response,
@@ -327,7 +327,7 @@ void bind_sensor(py::module_& m) {
             "Reads a sensor: name of a bundled sensor, or path of a sensor file (.toml). Raises InputError with file "
             "and "
             "line.")
-        .def("replace", &with_changes, py::kw_only(), "name"_a = py::none(), "pixel_pitch_um"_a = py::none(),
+        .def("replace", &changed_sensor, py::kw_only(), "name"_a = py::none(), "pixel_pitch_um"_a = py::none(),
              "resolution"_a = py::none(), "color_filter_array"_a = py::none(), "quantum_efficiency"_a = py::none(),
              "cover_glass"_a = py::none(), "angular_response"_a = py::none(), "gain_dn_per_e"_a = py::none(),
              "largest_gain_db"_a = py::none(), "saturation_capacity_e"_a = py::none(), "adc_bits"_a = py::none(),

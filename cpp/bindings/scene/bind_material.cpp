@@ -118,7 +118,7 @@ void def_property(py::class_<PythonMaterial>& material, const Field<Member>& fie
 }
 
 /// See Material.replace.
-PythonMaterial with_changes(PythonMaterial m, const std::optional<Colour>& diffuse,
+PythonMaterial changed_material(PythonMaterial m, const std::optional<Colour>& diffuse,
                             const std::optional<Colour>& specular, std::optional<float> shininess,
                             const std::optional<Colour>& emission,
                             const Typed<"ArrayLike | types.EllipsisType | None">& texture,
@@ -314,7 +314,7 @@ Raises InputError.)");
         },
         std::tuple_cat(metallic_roughness_arguments, metallic_roughness, both));
     material
-        .def("replace", &with_changes, py::kw_only(), "diffuse"_a = py::none(), "specular"_a = py::none(),
+        .def("replace", &changed_material, py::kw_only(), "diffuse"_a = py::none(), "specular"_a = py::none(),
              "shininess"_a = py::none(), "emission"_a = py::none(), "texture"_a = py::ellipsis(), "name"_a = py::none(),
              "metallic"_a = py::none(), "roughness"_a = py::none(), "transmission"_a = py::none(), "ior"_a = py::none(),
              "opacity"_a = py::none(),
