@@ -63,27 +63,35 @@ class _Splats(TypedDict):
 __version__: str
 _STATE_FORMAT: int
 
-def _record_inputs(is_on: bool) -> None: ...
-def _check_no_input(output: bytes) -> None: ...
+def _record_inputs(is_on: bool) -> None:
+    """
+    Internal. Starts (True) or ends (False) recording which files are read.
+    """
+
+def _check_no_input(output: bytes) -> None:
+    """
+    Internal. Raises an error if the output file is one of the recorded input files.
+    """
+
 def one_line(message: str) -> str:
     """
-    A message as one line: without control characters, and what is too long for a message without its middle.
+    Returns a message as one line: control characters are removed, and the middle of a message that is too long is left out.
     """
 
 class RealcamError(Exception):
-    """Base of all errors of realcam. The message is one line: what, where, and what is expected."""
+    """Base class of all errors of realcam. The message is one line: what is wrong, where, and what is expected."""
 
 class InputError(RealcamError, ValueError):
-    """A value that makes no sense. Also a ValueError."""
+    """Raised for an invalid value. Also a ValueError."""
 
 class ArgumentError(InputError, TypeError):
-    """An argument of the wrong type, missing, or not known. Also a TypeError."""
+    """Raised for an argument that has the wrong type, is missing or is unknown. Also a TypeError."""
 
 class NothingToPlan(InputError):
-    """A shot in which there is nothing to decide upon: the camera sees neither an object nor light."""
+    """Raised by the planner for a shot that it cannot plan, because the camera sees neither an object nor light."""
 
 class LensFileError(RealcamError):
-    """A lens that cannot be read or built. Attributes: file (str, empty where there is none), line and surface (int, from 1; 0 where they do not apply); glass (str), the name of a glass that is not known, or several, and candidate, one of these; can_be_forced (bool), whether force=True reads the file."""
+    """Raised for a lens that cannot be read or built. Attributes: file (str, empty if there is none), line and surface (int, from 1; 0 if they do not apply); glass (str), the name of an unknown or ambiguous glass, else empty; candidate (str), one catalogue glass of that name, or empty; can_be_forced (bool), True if force=True reads the file."""
 
     file: str
     line: int
@@ -93,56 +101,82 @@ class LensFileError(RealcamError):
     can_be_forced: bool
 
 class SceneFileError(RealcamError):
-    """A scene that cannot be read, or that holds no geometry."""
+    """Raised for a scene that cannot be read, or that contains no geometry."""
 
 class ImageFileError(RealcamError):
-    """A picture that cannot be read or written."""
+    """Raised for an image file that cannot be read or written."""
 
 class DeviceError(RealcamError):
-    """A device, or its library, that fails."""
+    """Raised if a device, or its library, fails or is missing."""
 
 class Cancelled(RealcamError):
-    """A render that its progress callback stopped."""
+    """Raised if a progress callback stopped the work."""
 
 @final
 class CoatingResponse:
     """
-    What a coated surface does to light, as arrays of the shape of angles and
-    wavelengths together. Shares of power; reflectance, transmittance and absorptance sum to 1.
+    Reflection and transmission of a coated surface: arrays with the common
+    (broadcast) shape of the angles and wavelengths. Fractions of the power; reflectance, transmittance and
+    absorptance add up to 1. See Coating.response.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
     @property
-    def absorptance_p(self) -> NDArray[np.float64]: ...
+    def absorptance_p(self) -> NDArray[np.float64]:
+        """
+        Absorbed fraction of p-polarised power.
+        """
     @property
-    def absorptance_s(self) -> NDArray[np.float64]: ...
+    def absorptance_s(self) -> NDArray[np.float64]:
+        """
+        Absorbed fraction of s-polarised power.
+        """
     @property
     def r_p(self) -> NDArray[np.complex128]:
         """
-        As r_s; at normal incidence r_p = -r_s.
+        Reflection coefficient for p-polarised light; at normal incidence r_p = -r_s.
         """
     @property
     def r_s(self) -> NDArray[np.complex128]:
         """
-        Complex amplitude of the electric field, light going as exp(i (k x - omega t)).
+        Complex reflection coefficient of the electric field for s-polarised light, with waves
+        exp(i (k x - omega t)).
         """
     @property
-    def reflectance_p(self) -> NDArray[np.float64]: ...
+    def reflectance_p(self) -> NDArray[np.float64]:
+        """
+        Reflected fraction of p-polarised power.
+        """
     @property
-    def reflectance_s(self) -> NDArray[np.float64]: ...
+    def reflectance_s(self) -> NDArray[np.float64]:
+        """
+        Reflected fraction of s-polarised power.
+        """
     @property
-    def t_p(self) -> NDArray[np.complex128]: ...
+    def t_p(self) -> NDArray[np.complex128]:
+        """
+        Transmission coefficient for p-polarised light.
+        """
     @property
-    def t_s(self) -> NDArray[np.complex128]: ...
+    def t_s(self) -> NDArray[np.complex128]:
+        """
+        Transmission coefficient for s-polarised light.
+        """
     @property
-    def transmittance_p(self) -> NDArray[np.float64]: ...
+    def transmittance_p(self) -> NDArray[np.float64]:
+        """
+        Transmitted fraction of p-polarised power.
+        """
     @property
-    def transmittance_s(self) -> NDArray[np.float64]: ...
+    def transmittance_s(self) -> NDArray[np.float64]:
+        """
+        Transmitted fraction of s-polarised power.
+        """
 
 @final
 class CoatingLayer:
     """
-    One homogeneous film.
+    One homogeneous thin film of a coating.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
@@ -155,26 +189,31 @@ class CoatingLayer:
         design_wavelength_nm: float | None = None,
     ) -> None:
         """
-        material: index, complex n + ik (k > 0 absorbs), (n_d, V_d), [(wavelength_nm, n, k), ...] with straight lines
-        between, "aluminium", "silver", glass name or Glass.
-        thickness_nm: physical. thickness_waves: optical, in waves of design_wavelength_nm; 0.25 is a quarter wave.
+        material: a refractive index; a complex index n + ik (k > 0 absorbs); (n_d, V_d); a list of
+        (wavelength_nm, n, k), interpolated linearly; "aluminium"; "silver"; the name of a glass; or a Glass.
+        Exactly one thickness must be specified. thickness_nm: physical thickness. thickness_waves: optical thickness in
+        waves of design_wavelength_nm; 0.25 is a quarter wave. Raises InputError.
         """
     def index(self, wavelength_nm: float) -> complex:
         """
-        Refractive index n + ik. Raises InputError at a wavelength at which it is not known.
+        Returns the complex refractive index n + ik. Raises InputError if it is unknown at that wavelength.
         """
     @property
-    def thickness_nm(self) -> float: ...
+    def thickness_nm(self) -> float:
+        """
+        Physical thickness.
+        """
 
 @final
 class Coating:
     """
-    What covers a surface of a lens. A value.
+    Coating of a lens surface: thin films, a metal, or a fixed reflectance.
     """
     @staticmethod
     def named(name: str) -> Coating:
         """
-        "bare", "quarter_wave" (MgF2, 1.38, for 550 nm), "aluminium", "silver", or "unknown".
+        Returns the coating "bare", "quarter_wave" (a quarter wave of MgF2, index 1.38, at 550 nm), "aluminium",
+        "silver" or "unknown". Raises InputError for other names.
         """
     @staticmethod
     def quarter_wave(
@@ -182,7 +221,7 @@ class Coating:
         design_wavelength_nm: float = 550.0,
     ) -> Coating:
         """
-        One layer that is a quarter of a wave thick at normal incidence.
+        Returns a coating of one layer that is a quarter of a wave thick at normal incidence.
         """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
@@ -195,10 +234,12 @@ class Coating:
         name: str = "",
     ) -> None:
         """
-        layers: CoatingLayers from the air inwards: the first touches the medium of the lower index at the d line, the
-        last the glass or the metal. Empty: a bare surface.
-        metal: of a mirror, with or without layers; materials as CoatingLayer takes them.
-        reflectance: of a mirror, the share of the power that it reflects at every angle and wavelength.
+        layers: CoatingLayers from the air inwards. The first touches the medium with the lower index at the d
+        line, the last touches the glass or the metal. Empty: a bare surface.
+        metal: material of a mirror, with or without layers, as for CoatingLayer.
+        reflectance: for a mirror without layers and metal: fraction of the power, 0 to 1, that is reflected at every angle
+        and wavelength.
+        name: name of the coating. Raises InputError.
         """
     def response(
         self,
@@ -210,78 +251,87 @@ class Coating:
         from_inside: bool = False,
     ) -> CoatingResponse:
         """
-        Reflection and transmission by the characteristic matrix, for both polarisations.
-        angle_deg: of incidence, 0 to 90, in the medium that the light comes from. Arrays are broadcast.
-        outside, inside: materials on either side; None is air outside. from_inside: the light comes from there.
-        Returns a CoatingResponse. Raises InputError, also at a wavelength at which a material is not known.
+        Computes reflection and transmission for both polarisations by the characteristic matrix.
+        angle_deg: angles of incidence, 0 to 90, in the medium from which the light comes. wavelength_nm: wavelengths, 100 to
+          20000. The two are broadcast together.
+        outside: medium in front of the first layer; None: air. inside: medium behind the last layer, required unless the
+          coating is a mirror's. Both as for Surface(material=...).
+        from_inside: True if the light comes from the medium inside.
+        Returns a CoatingResponse. Raises InputError, also if a material is unknown at a wavelength.
         """
     @property
     def kind(self) -> str:
         """
-        unknown (not said), bare, layers, metal or reflectance.
+        "unknown" (not specified), "bare", "layers", "metal" or "reflectance".
         """
     @property
-    def layers(self) -> list[CoatingLayer]: ...
+    def layers(self) -> list[CoatingLayer]:
+        """
+        List of CoatingLayers, from the air inwards.
+        """
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """
+        Name; may be empty.
+        """
 
 @final
 class Glass:
     """
-    An optical medium: refractive index relative to air, by wavelength.
+    Optical medium: refractive index relative to air as a function of wavelength.
     """
     @staticmethod
     def cauchy(coefficients: Sequence[float]) -> Glass:
         """
-        n = A + B/l^2 + C/l^4 + ..., l in um. Raises InputError where there is no coefficient.
+        Returns a glass with n = A + B/l^2 + C/l^4 + ..., l the wavelength in um. coefficients: [A, B, C, ...]. Raises InputError if the list is empty.
         """
     @staticmethod
     def constant(index: float) -> Glass:
         """
-        The same index at every wavelength.
+        Returns a medium with the same index at every wavelength. Raises InputError below 1.
         """
     @staticmethod
     def from_abbe_number(n_d: float, abbe_number: float) -> Glass:
         """
-        Two-term Cauchy glass with this index at the d line and this Abbe number V_d = (n_d - 1)/(n_F - n_C).
-        Raises InputError for an index below 1 or a number that is not positive.
+        Returns a two-term Cauchy glass with this index at the d line and this Abbe number
+        V_d = (n_d - 1)/(n_F - n_C). Raises InputError for an index below 1 or an Abbe number that is not positive.
         """
     @staticmethod
     def named(name: str) -> Glass:
         """
-        A glass of the catalogue, "N-BK7" or "schott:F4". Raises InputError with the nearest names.
+        Returns a glass of the catalogue, such as "N-BK7" or "schott:F4". Raises InputError with the most similar names.
         """
     @staticmethod
     def sellmeier(B: Sequence[float], C: Sequence[float]) -> Glass:
         """
-        n^2 = 1 + sum B l^2/(l^2 - C), l in um, C in um^2.
+        Returns a glass with n^2 = 1 + sum of B l^2/(l^2 - C), l the wavelength in um, C in um^2. Raises InputError.
         """
     @staticmethod
     def table(points: Sequence[tuple[float, float]]) -> Glass:
         """
-        Interpolated (wavelength_nm, index) pairs.
+        Returns a glass interpolated between (wavelength_nm, index) pairs. Raises InputError.
         """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     def index(self, wavelength_nm: float) -> float:
         """
-        Refractive index.
+        Returns the refractive index relative to air; nan if the formula has no real value at that wavelength.
         """
     @property
     def label(self) -> str:
         """
-        As it was written: a name, a number, a pair; empty for air.
+        Name, index or pair from which the glass was created, as text; empty for air.
         """
 
 def glass_names() -> list[str]:
     """
-    Names of the glasses of the catalogue, as "schott:N-BK7".
+    Returns the names of the glasses of the catalogue, such as "schott:N-BK7".
     """
 
 @final
 class Surface:
     """
-    One row of a lens table: a surface and what lies behind it. Lengths in mm, lens frame (z to the film).
+    A surface of a lens, with the medium and the distance behind it. Lengths in mm, z towards the film. The constructor describes the properties.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
@@ -312,27 +362,31 @@ class Surface:
         obscurations: Sequence[dict[str, Any]] | None = None,
     ) -> None:
         """
-        radius_of_curvature_mm: positive where the centre lies on the film side; inf: plane.
-        thickness_mm: to the next surface; that of the last surface is not used.
-        material: behind the surface: index, (n_d, V_d), glass name, Glass, or None for air.
-        conic: k = -e^2. aspheric_coefficients: {even power of r: mm^(1 - power)}, powers 4 to 18.
-        inner_semi_diameter_mm: light closer to the axis is blocked.
-        type: refracting, mirror, stop or aperture (a plane that only blocks).
-        coating: "bare", "quarter_wave", of a mirror "aluminium" or "silver", a Coating, or "unknown": light
-        is then taken to meet bare glass, or a perfect mirror.
-        decentre_mm: (x, y) or (x, y, z) of the vertex, from its place on the axis. tilt_deg: angles by which it
-        is then turned about x, its new y and its new z, counterclockwise as seen from the axis's tip. returns:
-        this moves the surface alone; else the axis goes on from there, with all that follows and the film.
-        form: "biconic" or "toroid", of which radius and conic are the section in the yz plane, and
-        radius_of_curvature_x_mm and conic_x that in the xz plane. A toroid's even terms are of y.
-        radial_terms: {power of r: mm^(1 - power)}, powers 1 to 20. xy_terms: {(i, j): coefficient of x^i y^j}.
+        radius_of_curvature_mm: positive if the centre lies on the film's side; inf: plane.
+        thickness_mm: distance along the axis to the next surface; ignored for the last surface.
+        material: medium behind the surface: a refractive index, (n_d, V_d), the name of a glass, a Glass, or None for air.
+        clear_semi_diameter_mm: radius within which the surface transmits or reflects light.
+        conic: conic constant k = -e^2. aspheric_coefficients: {even power of r, 4 to 18: coefficient in mm^(1 - power)}.
+        inner_semi_diameter_mm: radius of a hole or central obstruction; light closer to the axis is blocked.
+        type: "refracting", "mirror", "stop", or "aperture" (a plane that only blocks light).
+        coating: "bare", "quarter_wave", for a mirror "aluminium" or "silver", a Coating, or "unknown", which counts as bare
+          glass or as a perfect mirror.
+        decentre_mm: (x, y) or (x, y, z), displacement of the vertex from its position on the axis. tilt_deg: (x, y, z),
+          rotations after the displacement, about x, then the new y, then the new z, counterclockwise as seen from the tip of
+          the rotation axis.
+        returns: True: decentre and tilt move this surface alone; False: they move all following surfaces and the film, too.
+        form: "conic", "biconic" or "toroid". For the latter two, radius_of_curvature_mm and conic describe the section in the
+          yz plane, radius_of_curvature_x_mm and conic_x that in the xz plane. A toroid's even terms are powers of y.
+        radial_terms: {power of r, 1 to 20: coefficient in mm^(1 - power)}. xy_terms: {(i, j): coefficient of x^i y^j}.
         zernike: {"order": "noll" or "fringe", "radius_mm", "coefficients_mm"}.
         forbes: {"kind": "bfs" or "con", "radius_mm", "coefficients_mm"}.
         superconic: {"radius_mm", "coefficients"}.
-        These parts are added to the conic.
-        aperture: {"ellipse_mm" or "rectangle_mm": (half_x, half_y)}, {"circle_mm": radius} or
-        {"polygon_mm": corners}, each with "offset_mm". obscurations: a list of {"circle_mm", "ellipse_mm" or
-        "rectangle_mm", "offset_mm", "angle_deg"} and {"spider_arms": count, "width_mm", "angle_deg"}.
+        All terms are added to the sag of the conic.
+        aperture: shape of the clear aperture within the clear semi-diameter: {"circle_mm": radius}, {"ellipse_mm" or
+          "rectangle_mm": (half_x, half_y)} or {"polygon_mm": list of corners (x, y)}, each optionally with "offset_mm": (x, y).
+        obscurations: list of {"circle_mm", "ellipse_mm" or "rectangle_mm", "offset_mm", "angle_deg"} and of
+          {"spider_arms": count, "width_mm", "length_mm", "angle_deg"}.
+        Raises InputError.
         """
     def replace(
         self,
@@ -361,128 +415,231 @@ class Surface:
         obscurations: Sequence[dict[str, Any]] | None = None,
     ) -> Surface:
         """
-        The surface with some of what Surface() takes changed. What is not given stays.
+        Returns a copy with some properties changed. Arguments as for Surface(); those that are omitted stay. Raises InputError.
         """
     def sag_at_mm(self, x_mm: float, y_mm: float) -> float:
         """
-        Height over the vertex plane; nan past the edge of the conic.
+        Returns the sag, the height over the vertex plane, at a point; nan beyond the edge of the conic.
         """
     def sag_mm(self, radius_mm: float) -> float:
         """
-        Height over the vertex plane at a distance from the axis, in the yz plane; nan past the edge of the conic.
+        Returns the sag, the height over the vertex plane, in the yz plane at a distance from the axis; nan beyond the edge of the conic.
         """
     @property
-    def aperture(self) -> dict[str, Any]: ...
+    def aperture(self) -> dict[str, Any]:
+        """
+        Shape of the clear aperture, see Surface(); empty: the circle of the clear semi-diameter.
+        """
     @property
-    def aspheric_coefficients(self) -> dict[int, float]: ...
+    def aspheric_coefficients(self) -> dict[int, float]:
+        """
+        {even power of r: coefficient in mm^(1 - power)}, without those that are 0.
+        """
     @property
-    def clear_semi_diameter_mm(self) -> float: ...
+    def clear_semi_diameter_mm(self) -> float:
+        """
+        Radius within which the surface transmits or reflects light.
+        """
     @property
-    def coating(self) -> Coating: ...
+    def coating(self) -> Coating:
+        """
+        Coating.
+        """
     @property
-    def conic(self) -> float: ...
+    def conic(self) -> float:
+        """
+        Conic constant k = -e^2.
+        """
     @property
-    def conic_x(self) -> float: ...
+    def conic_x(self) -> float:
+        """
+        Conic constant in the xz plane, of a biconic.
+        """
     @property
-    def curvature_per_mm(self) -> float: ...
+    def curvature_per_mm(self) -> float:
+        """
+        1 / radius_of_curvature_mm.
+        """
     @property
-    def decentre_mm(self) -> tuple[float, float, float]: ...
+    def decentre_mm(self) -> tuple[float, float, float]:
+        """
+        (x, y, z), displacement of the vertex.
+        """
     @property
-    def forbes(self) -> dict[str, Any]: ...
+    def forbes(self) -> dict[str, Any]:
+        """
+        Terms of the sag, see Surface(); an empty dict if there are no such terms.
+        """
     @property
-    def form(self) -> str: ...
+    def form(self) -> str:
+        """
+        "conic", "biconic" or "toroid".
+        """
     @property
-    def inner_semi_diameter_mm(self) -> float: ...
+    def inner_semi_diameter_mm(self) -> float:
+        """
+        Radius of a hole or central obstruction; 0: there is none.
+        """
     @property
-    def material(self) -> Glass: ...
+    def material(self) -> Glass:
+        """
+        Glass behind the surface.
+        """
     @property
-    def obscurations(self) -> list[dict[str, Any]]: ...
+    def obscurations(self) -> list[dict[str, Any]]:
+        """
+        List of obscurations, see Surface().
+        """
     @property
-    def radial_terms(self) -> dict[int, float]: ...
+    def radial_terms(self) -> dict[int, float]:
+        """
+        {power of r: coefficient in mm^(1 - power)}, without those that are 0.
+        """
     @property
-    def radius_of_curvature_mm(self) -> float: ...
+    def radius_of_curvature_mm(self) -> float:
+        """
+        Radius of curvature at the vertex, of the conic; inf: plane.
+        """
     @property
-    def radius_of_curvature_x_mm(self) -> float: ...
+    def radius_of_curvature_x_mm(self) -> float:
+        """
+        Radius of curvature in the xz plane, of a biconic or toroid.
+        """
     @property
-    def returns(self) -> bool: ...
+    def returns(self) -> bool:
+        """
+        True if decentre_mm and tilt_deg move this surface alone.
+        """
     @property
-    def superconic(self) -> dict[str, Any]: ...
+    def superconic(self) -> dict[str, Any]:
+        """
+        Terms of the sag, see Surface(); an empty dict if there are no such terms.
+        """
     @property
-    def thickness_mm(self) -> float: ...
+    def thickness_mm(self) -> float:
+        """
+        Distance along the axis to the next surface.
+        """
     @property
-    def tilt_deg(self) -> tuple[float, float, float]: ...
+    def tilt_deg(self) -> tuple[float, float, float]:
+        """
+        (x, y, z), rotations about x, the new y and the new z.
+        """
     @property
-    def type(self) -> str: ...
+    def type(self) -> str:
+        """
+        "refracting", "mirror", "stop" or "aperture".
+        """
     @property
-    def xy_terms(self) -> dict[tuple[int, int], float]: ...
+    def xy_terms(self) -> dict[tuple[int, int], float]:
+        """
+        {(i, j): coefficient of x^i y^j}.
+        """
     @property
-    def zernike(self) -> dict[str, Any]: ...
+    def zernike(self) -> dict[str, Any]:
+        """
+        Terms of the sag, see Surface(); an empty dict if there are no such terms.
+        """
 
 def _form_terms() -> tuple[str, ...]:
     """
-    Keywords of Surface for terms of the sag, which are variables, too.
+    Internal. Returns the keywords of Surface() whose values are dicts of sag terms, such as "zernike".
     """
 
 @final
 class FirstOrder:
     """
-    First-order data at one wavelength. mm; positions from the front vertex. The effective focal length is 1 / power;
-    in an image space of another index than air the rear one is image_index times that. Of an afocal lens the focal length,
-    the focal distances and the f-number are infinite.
+    First-order (paraxial) data at one wavelength. For an afocal lens the focal length, the focal distances and
+    the f-number are infinite.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     @property
-    def back_focal_distance_mm(self) -> float: ...
+    def back_focal_distance_mm(self) -> float:
+        """
+        Distance from the last vertex to the rear focal point.
+        """
     @property
-    def effective_focal_length_mm(self) -> float: ...
+    def effective_focal_length_mm(self) -> float:
+        """
+        1 / power. In an image space other than air the rear focal length is image_index times that.
+        """
     @property
-    def entrance_pupil_diameter_mm(self) -> float: ...
+    def entrance_pupil_diameter_mm(self) -> float:
+        """
+        Diameter of the entrance pupil.
+        """
     @property
-    def entrance_pupil_position_mm(self) -> float: ...
+    def entrance_pupil_position_mm(self) -> float:
+        """
+        z of the entrance pupil, from the front vertex.
+        """
     @property
-    def exit_pupil_diameter_mm(self) -> float: ...
+    def exit_pupil_diameter_mm(self) -> float:
+        """
+        Diameter of the exit pupil.
+        """
     @property
-    def exit_pupil_position_mm(self) -> float: ...
+    def exit_pupil_position_mm(self) -> float:
+        """
+        z of the exit pupil, from the front vertex.
+        """
     @property
-    def f_number(self) -> float: ...
+    def f_number(self) -> float:
+        """
+        Focal length / diameter of the entrance pupil.
+        """
     @property
-    def front_focal_distance_mm(self) -> float: ...
+    def front_focal_distance_mm(self) -> float:
+        """
+        Position of the front focal point, from the front vertex.
+        """
     @property
     def image_index(self) -> float:
         """
-        Refractive index of the medium before the film.
+        Refractive index of the medium in front of the film.
         """
 
 @final
 class Meridian:
     """
-    A lens in one of its two principal meridians: planes through the chief ray of the film's middle in which
-    light stays. mm; without power the focal length and the f-number are infinite.
+    First-order data of a lens in one of its two principal meridians: planes containing the chief ray of the film
+    centre; a ray launched in one of them stays in it. Without power, the focal length and the f-number are infinite. See
+    Lens.meridians.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     @property
     def azimuth_deg(self) -> float:
         """
-        Of the plane in front of the lens, from the x axis towards y; -90 to 90.
+        Azimuth of the plane in front of the lens, from the x axis towards y; -90 to 90.
         """
     @property
     def back_focal_distance_mm(self) -> float:
         """
-        Last vertex to the focus of distant light.
+        Distance from the last vertex to the focus of light from infinity.
         """
     @property
-    def entrance_pupil_diameter_mm(self) -> float: ...
+    def entrance_pupil_diameter_mm(self) -> float:
+        """
+        Width of the entrance pupil in this plane.
+        """
     @property
-    def f_number(self) -> float: ...
+    def f_number(self) -> float:
+        """
+        Focal length / width of the entrance pupil.
+        """
     @property
-    def focal_length_mm(self) -> float: ...
+    def focal_length_mm(self) -> float:
+        """
+        Focal length.
+        """
 
 @final
 class Lens:
     """
-    A lens in one state of its rings. A value: every change returns a new Lens.
+    Lens with the current setting of its focus, zoom and aperture rings. Immutable:
+    every change returns a new Lens. Lens frame: origin at the front vertex, z along the axis towards the film, mm.
     """
     @staticmethod
     def _load_with_light(
@@ -492,9 +649,15 @@ class Lens:
         force: bool = False,
         pbrt_thickness: str | None = None,
         glass_catalogue: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None = None,
-    ) -> tuple[Lens, list[float], list[float]]: ...
+    ) -> tuple[Lens, list[float], list[float]]:
+        """
+        Internal. Returns (lens, field angles in degrees, wavelengths in nm) of a lens file; arguments as for Lens.load.
+        """
     @staticmethod
-    def _load_with_notes(path: str | os.PathLike[str]) -> tuple[Lens, list[str]]: ...
+    def _load_with_notes(path: str | os.PathLike[str]) -> tuple[Lens, list[str]]:
+        """
+        Internal. Returns (lens, notes on values that were computed or assumed).
+        """
     @staticmethod
     def load(
         name_or_path: str | os.PathLike[str],
@@ -505,14 +668,18 @@ class Lens:
         glass_catalogue: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None = None,
     ) -> Lens:
         """
-        A bundled lens or one in the folders of REALCAM_LENS_PATH by name, or a lens file by path. The suffix says of which program: .zmx (Zemax), .seq
-        (CODE V), .len (OSLO), .dat (pbrt), .json (Optiland), .roa (ray-optics); else it is realcam's own, TOML.
-        glass: {name in the file: (n_d, V_d), "schott:F4", or what else Surface() takes}, for glasses that no
-        catalogue has, or several. force: leaves out what realcam has no model of, with a UserWarning.
-        glass_catalogue: a path of a catalogue (.agf), or several; its glasses come before the bundled ones.
-        pbrt_thickness: "after" or "before" the surface of its row; None: the first row tells.
-        Raises LensFileError with file, line and surface, and InputError where glass names one that the
-        file does not have. What a file leaves out and is computed or assumed is a UserWarning.
+        Reads a lens.
+        name_or_path: name of a bundled lens or of one in the folders of REALCAM_LENS_PATH, or path of a lens file. The suffix
+          determines the format: .zmx (Zemax), .seq (CODE V), .len (OSLO), .dat (pbrt), .json (Optiland), .roa (ray-optics);
+          any other suffix: realcam's own format, TOML.
+        glass: {name in the file: material}, for glasses that no catalogue, or more than one, contains; materials as for
+          Surface(), such as (n_d, V_d) or "schott:F4".
+        force: ignore unsupported features of the file, with a UserWarning, instead of raising LensFileError.
+        glass_catalogue: path of a glass catalogue (.agf), or several, which take precedence over the bundled ones.
+        pbrt_thickness: whether the thickness in a row of a .dat file is that "after" or "before" its surface; None: inferred
+          from the first row.
+        Raises LensFileError with file, line and surface, and InputError if glass contains a name that is not in the file.
+        Missing values that are computed or assumed cause a UserWarning.
         """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
@@ -533,14 +700,18 @@ class Lens:
         film_radius_of_curvature_mm: float = ...,
     ) -> None:
         """
-        surfaces: from the scene to the film, exactly one of them a Stop.
-        film_distance_mm: last vertex to film; None: best focus at infinity by real rays.
-        film_mm: (width, height) used where a Camera names no film.
-        iris_blades: 0 for a round diaphragm, else 3 to 24; iris_rounding: 0 straight to 1 a circle.
-        focus_group: (first, last) index of the surfaces that move to focus; None: the whole lens moves.
-        allow_overlap: for experiments, faces may cross inside their rims, and the film the last face.
-        film_radius_of_curvature_mm: below 0 the film is hollow towards the lens; inf: flat.
-        Raises LensFileError, naming the surface (from 1), where the lens cannot be built.
+        surfaces: Surfaces in order from the scene to the film; exactly one must have the type "stop".
+        name: name of the lens.
+        film_distance_mm: distance from the last vertex to the film; None: best focus for infinity by real rays.
+        film_mm: (width, height) of the film that a Camera uses by default.
+        wavelength_nm: design wavelength, 100 to 20000.
+        iris_blades: number of diaphragm blades, 3 to 24; 0: a round diaphragm. iris_rounding: 0 for straight blade edges
+          to 1 for a circle. iris_rotation_deg: rotation of the diaphragm about the axis.
+        focus_group: (first, last) index of the surfaces that move for focusing; None: the whole lens moves.
+        nearest_focus_m: nearest focus distance, from the object to the film; 0: limited only by the optics.
+        allow_overlap: allows faces to cross inside their clear semi-diameters, and the film to cross the last face.
+        film_radius_of_curvature_mm: radius of curvature of the film; negative: concave towards the lens; inf: flat.
+        Raises LensFileError, with the number of the surface (from 1), if the lens is invalid.
         """
     def _backpropagate_rays(
         self,
@@ -555,9 +726,12 @@ class Lens:
         start: str = "film",
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """
-        For realcam.backpropagate_rays, which says more. Returns (V,), (N, 3), (N, 3).
+        Internal: use realcam.backpropagate_rays. Returns the derivatives of a function by the variables (V,), and by the origins and the directions (N, 3).
         """
-    def _file_content(self, path: str | os.PathLike[str]) -> tuple[bytes, list[str]]: ...
+    def _file_content(self, path: str | os.PathLike[str]) -> tuple[bytes, list[str]]:
+        """
+        Internal. Returns (content of the lens file as bytes, notes on what the format cannot represent).
+        """
     def _ray_derivatives(
         self,
         origins_mm: ArrayLike,
@@ -571,10 +745,13 @@ class Lens:
         rims: bool = True,
     ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """
-        For realcam.derivatives, which says more. variables: tuples of a quantity, a surface from 0, and two
-        numbers. frame: "lens", "axis" for that of the axis behind the last surface, or "film". With surface_count the frame
-        of the last surface crossed. Returns status (N,); origin, optical direction and optical path (N, 7); their
-        derivatives by the variables (N, 7, V), and by the given origin and direction (N, 7, 6).
+        Internal: use realcam.ray_derivatives.
+        variables: tuples (quantity, surface, number, number_y). surface: index from 0; number: power of r, index of the
+        coefficient or axis, or for "xy" the power of x; number_y: for "xy" the power of y.
+        frame: frame of the results: "lens", "axis" (that of the axis behind the last surface), or "film". With surface_count,
+        the frame of the last surface traced. rims: False if clear semi-diameters block no rays.
+        Returns status (N,); origin, optical direction and optical path (N, 7); their derivatives by the variables (N, 7, V),
+        and by the input origins and directions (N, 7, 6). NaN if status is not OK.
         """
     def aim(
         self,
@@ -586,24 +763,29 @@ class Lens:
         wavelength_nm: float | None = None,
     ) -> AimedRays:
         """
-        Rays of one object point that hit given points of the real stop, for Lens.trace(start="scene").
+        Finds the rays of one object point that hit specified points of the real stop, for
+        Lens.trace(start="scene").
         pupil: (N, 2), points of the stop in units of its radius.
-        field_deg: angle to the axis at which the light comes; positive: it rises towards +y and the film. Less than 180
-          for an object at infinity; less than 90, seen from the middle of the paraxial entrance pupil, for one nearer.
-        film_mm: (x, y), names the field by the film point, from the film's middle, at which the chief ray of the design
-          wavelength ends; in place of field_deg, and in both directions across the film.
-        object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
-        wavelength_nm: None is the design wavelength.
-        Returns AimedRays; the status is that of the ray behind the lens, and a ray that is not OK is nan. Origins may
-        lie behind the front surface: Lens.trace takes a ray for the whole straight line. Points on the very edge of the stop
-        are aimed at 5e-11 of its radius further in, so that rounding does not block the ray when it is traced.
-        Raises InputError where no ray of the object point reaches the middle of the stop.
+        field_deg: field angle in degrees, between the incoming light and the axis, in the y-z plane; positive: the light
+          travels towards +y on its way to the film. Below 180 for an object at infinity. For a nearer object below 90, and as
+          seen from the centre of the paraxial entrance pupil.
+        film_mm: specifies the field instead of field_deg, by the film point (x, y), in mm from the film's centre, at which the
+          chief ray of the design wavelength ends. It may lie outside the y-z plane.
+        object_distance_m: distance from the object plane to the front vertex, inf allowed; None: the plane in focus.
+        wavelength_nm: wavelength; None: the design wavelength.
+        Returns AimedRays. The status is that of the ray behind the lens; a ray whose status is not OK is nan.
+        Origins may lie behind the front surface, because Lens.trace uses the whole straight line of a ray. For points on the
+        edge of the stop the aim is 5e-11 of its radius further inside, so that rounding does not block the ray when it is
+        traced.
+        Raises InputError if no ray of the object point reaches the centre of the stop.
         """
     def best_focus_mm(self, object_distance_m: float | None = None, wavelength_nm: float | None = None) -> float:
         """
-        Last vertex to the plane of the smallest RMS spot of an axial point this far in front of the front vertex;
-        None is the plane in focus.
-        Raises InputError where there is none: no ray passes, or an afocal lens looks at infinity.
+        Returns the distance in mm from the last vertex to the plane with the smallest RMS spot of an axial
+        point.
+        object_distance_m: distance from the object plane to the front vertex, inf allowed; None: the plane in focus.
+        wavelength_nm: None: the design wavelength.
+        Raises InputError if there is no best focus: no ray passes, or the lens is afocal and the object at infinity.
         """
     def bundle(
         self,
@@ -617,17 +799,18 @@ class Lens:
         nodes: int = 6,
     ) -> RayBundle:
         """
-        Rays of one object point that fill what the lens lets pass, in double precision.
-        field_deg: angle to the axis at which the light comes; positive: it rises towards +y and the film. Less than 180
-          for an object at infinity; less than 90, seen from the middle of the paraxial entrance pupil, for one nearer.
-        film_mm: (x, y), names the field by the film point, from the film's middle, at which the chief ray of the design
-          wavelength ends; in place of field_deg, and in both directions across the film.
-        object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
-        wavelength_nm: None is the design wavelength.
-        film_distance_mm: last vertex to the plane that points_mm lie in; None: the film.
-        arms, nodes: number of radial arms about the centre of the light, and of Gauss nodes on each interval of an arm on which
-        light passes; real rays find the intervals' ends.
-        Returns a RayBundle. Raises InputError where no light passes, or a glass is not known at the wavelength.
+        Traces rays of one object point that fill what the lens transmits, in double precision.
+        field_deg: field angle in degrees, between the incoming light and the axis, in the y-z plane; positive: the light
+          travels towards +y on its way to the film. Below 180 for an object at infinity. For a nearer object below 90, and as
+          seen from the centre of the paraxial entrance pupil.
+        film_mm: specifies the field instead of field_deg, by the film point (x, y), in mm from the film's centre, at which the
+          chief ray of the design wavelength ends. It may lie outside the y-z plane.
+        object_distance_m: distance from the object plane to the front vertex, inf allowed; None: the plane in focus.
+        wavelength_nm: wavelength; None: the design wavelength.
+        film_distance_mm: distance from the last vertex to the plane of points_mm; None: the film.
+        arms: number of radial scan lines about the centre of the light, 4 to 4096. nodes: number of Gauss nodes, 1 to 256, on
+          each interval of a scan line on which light passes. The intervals' ends are found with real rays.
+        Returns a RayBundle. Raises InputError if no light passes, or a glass is unknown at the wavelength.
         """
     def draw(
         self,
@@ -647,15 +830,16 @@ class Lens:
         width_px: int = 1600,
     ) -> Figure:
         """
-        Draws the meridional section with rays as a matplotlib figure, which notebooks show; the film is on the right.
+        Draws the meridional section with rays; the film is on the right.
 
         plane, rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: see realcam.cross_section.
-        radius_colours: draws faces of positive radius of curvature in blue, of negative in red.
-        marks: entrance and exit pupil (EP, XP), principal planes (H, H'), focal points (F, F').
-        insets: the rays of each field at the film, magnified.
-        ghost: the lens in another state; its elements that have moved are drawn as outlines.
-        theme: "light" or "dark". width_px: of the picture. realcam.drawing.save_cross_section writes it to a file.
-        Raises InputError if no light passes the lens or an option is invalid.
+        radius_colours: True: faces with a positive radius of curvature are blue, those with a negative one red.
+        marks: True: draws entrance and exit pupil (EP, XP), principal planes (H, H') and focal points (F, F').
+        insets: True: draws the rays of each field at the film, magnified.
+        ghost: the lens in another state; those of its elements that have moved are drawn as outlines.
+        theme: "light" or "dark". width_px: width of the figure in pixels.
+        Returns a matplotlib figure, which notebooks show; realcam.drawing.save_cross_section writes it to a file. Raises
+        InputError if no light passes the lens or an option is invalid.
         """
     def film_points(
         self,
@@ -670,52 +854,56 @@ class Lens:
         dtype: DTypeLike = "float32",
     ) -> NDArray[np.float32]:
         """
-        Where very many rays of one object point land, for spots, histograms and bokeh: 50 million a second and
-        more. They fill a rectangle in front of the lens that holds all light that passes, evenly, and are not aimed at the
-        stop.
-        field_deg: angle to the axis at which the light comes; positive: it rises towards +y and the film. Less than 180
-          for an object at infinity; less than 90, seen from the middle of the paraxial entrance pupil, for one nearer.
-        film_mm: (x, y), names the field by the film point, from the film's middle, at which the chief ray of the design
-          wavelength ends; in place of field_deg, and in both directions across the film.
-        object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
-        wavelength_nm: None is the design wavelength.
-        count: rays to trace; up to a third of them are blocked.
-        film_distance_mm: last vertex to the plane of the points; None: the film.
-        pattern: "even", a sequence that is spread evenly for any count, or "grid".
-        dtype: of the trace. "float32" is right within 0.3 um for photographic lenses.
-        Returns (M, 2) float32, x and y in mm from the axis, of the rays that pass. All stand for the same light, but for
-        (1 + (q / D)^2)^1.5, q the distance from the ray that is even and D that of the object.
-        Raises InputError where no light passes.
+        Computes the film points of very many rays of one object point, for spots, histograms and bokeh, at 50
+        million rays per second and more. The rays uniformly fill a rectangle in front of the lens that contains all light that
+        passes; they are not aimed at the stop.
+        field_deg: field angle in degrees, between the incoming light and the axis, in the y-z plane; positive: the light
+          travels towards +y on its way to the film. Below 180 for an object at infinity. For a nearer object below 90, and as
+          seen from the centre of the paraxial entrance pupil.
+        film_mm: specifies the field instead of field_deg, by the film point (x, y), in mm from the film's centre, at which the
+          chief ray of the design wavelength ends. It may lie outside the y-z plane.
+        object_distance_m: distance from the object plane to the front vertex, inf allowed; None: the plane in focus.
+        wavelength_nm: wavelength; None: the design wavelength.
+        count: number of rays to trace, up to 2^31; up to a third of them are blocked.
+        film_distance_mm: distance from the last vertex to the plane of the points; None: the film.
+        pattern: arrangement of the rays. "even": a low-discrepancy sequence, uniform for any count; "grid": a regular grid.
+        dtype: precision of the trace, "float32" or "float64". The error of "float32" is below 0.3 um for photographic lenses.
+        Returns an array (M, 2) of float32, (x, y) in mm from the axis, of the rays that pass. All rays represent the same
+        amount of light up to the factor (1 + (q / D)^2)^1.5, with q the distance of a ray from the centre of the rectangle and
+        D the distance of the object. Raises InputError if no light passes.
         """
     def film_pupil(self, film_mm: tuple[float, float] = (0.0, 0.0), wavelength_nm: float | None = None) -> FilmPupil:
         """
-        The pupil as a film point sees it, (x, y) from the film's middle, by real rays.
+        Finds the exit pupil as seen from a film point, by real rays. film_mm: (x, y) from the film's centre.
+        wavelength_nm: None: the design wavelength. Returns a FilmPupil. Raises InputError.
         """
     def first_order(self, wavelength_nm: float | None = None) -> FirstOrder:
         """
-        At the design wavelength where none is given. Of a lens that is no centred one of revolution: about the
-        chief ray of the film's middle, the means of both meridians, so that the f-number is that of the exposure.
-        How the whole lens is tilted or shifted before the film changes nothing. Raises InputError where the film's
-        middle gets no light.
+        Returns the FirstOrder data at a wavelength; None: the design wavelength.
+        For a lens that is not centred and rotationally symmetric they hold about the chief ray of the film centre, as means
+        of both principal meridians, so that the f-number determines the exposure. A tilt or shift of the whole lens
+        relative to the film has no influence. Raises InputError if no light reaches the film centre.
         """
     def focused(self, focus_distance_m: float) -> Lens:
         """
-        The lens focused on a plane at this distance from the film, inf allowed: the real rays of the full
-        aperture make their smallest spot. Raises InputError where the lens cannot.
+        Returns the lens focused on the plane at this distance from the film, inf allowed. Best focus: the
+        smallest RMS spot of real rays through the full aperture. Raises InputError if the lens cannot be focused there.
         """
     def ghost(self, first: int, second: int, *, wavelength_nm: float | None = None) -> Ghost:
         """
-        The ghost of light that surface `first` reflects back, and surface `second`, in front of it, forward
-        again. Surfaces are numbered from 0, as in Lens.surfaces; `first` may be the film, with the number behind the last
-        one's. Paraxial (R. H. Abd El-Maksoud and J. M. Sasian, Proc. SPIE 7428, 742807, 2009). Raises InputError where the
-        two are not refracting surfaces, or the film and one, in that order.
+        Returns the Ghost of light that surface `first` reflects back and surface `second`, in front of it,
+        forward again, with paraxial data (R. H. Abd El-Maksoud and J. M. Sasian, Proc. SPIE 7428, 742807, 2009).
+        first, second: indices as in Lens.surfaces; first may be the film, whose index is the number of surfaces.
+        wavelength_nm: None: the design wavelength.
+        Raises InputError unless both are refracting surfaces, or the film and a refracting surface, in that order.
         """
     def ghosts(self, *, film_reflectance: float = 0) -> list[Ghost]:
         """
-        All ghosts that reach the lens's film at the design wavelength, the brightest first, with their shares:
-        by rays through both reflections, with the reflectances of light along the axis. Surfaces of unknown
-        coating count as bare. With a film that reflects some share of the light as a mirror does, also those of film and
-        surface. Raises InputError where an index is not known.
+        Returns the list of all ghosts that reach the lens's film at the design wavelength, the brightest first,
+        with their shares. Computed with rays through both reflections, and reflectances for light along the axis; surfaces of
+        unknown coating count as bare.
+        film_reflectance: specular reflectance of the film, 0 to 1; above 0 the list includes ghosts of film and surface.
+        Raises InputError if a refractive index is unknown.
         """
     def gradient(
         self,
@@ -734,7 +922,7 @@ class Lens:
         Exact derivatives of a quantity by variables of the lens, by rays in dual numbers.
 
         quantity: "spot_mm" (RMS radius about the centroid), "wavefront_waves" (RMS), "mtf_tangential" and "mtf_sagittal"
-          (of rays alone, at frequency_per_mm), "chief_ray_height_mm", "chief_ray_angle_deg" (to the film's normal),
+          (geometric, at frequency_per_mm), "chief_ray_height_mm", "chief_ray_angle_deg" (to the film's normal),
           "distortion_percent" (against the paraxial height on the film), "length_mm" (front vertex to film), and of
           first_order(): effective_focal_length_mm, back_focal_distance_mm, front_focal_distance_mm, f_number,
           entrance_pupil_position_mm.
@@ -749,22 +937,23 @@ class Lens:
         """
     def inserted(self, index: int, surfaces: Sequence[Surface], *, gap_mm: float | None = None) -> Lens:
         """
-        The lens with surfaces put in front of the one of this index, from 0; behind the last one if the index is
-        their number.
-        gap_mm: from the surface before them to the first; None: as it is. Wanted behind the last surface.
-        The film keeps its distance from the last surface, and its place where surfaces are put behind that.
-        Focus group and zoom positions are kept. Raises InputError, and LensFileError where the lens cannot be
-        built.
+        Returns the lens with additional surfaces.
+        index: they are inserted in front of the surface of this index, from 0, or behind the last surface if it is the number
+          of surfaces.
+        gap_mm: distance from the preceding surface to the first inserted one; None: unchanged. Required behind the last
+        surface. The film keeps its distance from the last surface, or its position if surfaces are inserted behind that. Focus
+        group and zoom positions are retained. Raises InputError, and LensFileError if the resulting lens is invalid.
         """
     def meridians(self, wavelength_nm: float | None = None) -> tuple[Meridian, Meridian]:
         """
-        First-order data in the two principal meridians, about the chief ray of the film's middle; that nearer to
-        the x axis first. Raises InputError where there is no such ray.
+        Returns the pair of principal Meridians, about the chief ray of the film centre; the one nearer to the x
+        axis first. wavelength_nm: None: the design wavelength. Raises InputError if there is no such chief ray.
         """
     def overlaps(self) -> list[tuple[int, int, float, float]]:
         """
-        Pairs of faces that cross inside their rims, as (first, second, depth_mm, radius_mm): the indices of the
-        two, how far they reach into each other at most, and how far from the axis that is. Empty but with allow_overlap.
+        Returns pairs of faces that cross inside their clear semi-diameters, as tuples (first, second, depth_mm,
+        radius_mm): their indices, the largest depth of the overlap along the axis, and its distance from the axis. The list
+        is empty unless allow_overlap is True.
         """
     def psf(
         self,
@@ -782,43 +971,49 @@ class Lens:
         weights: Sequence[float] | None = None,
     ) -> PSF:
         """
-        Point spread function: the light of one object point on the film, with diffraction, from the exact wavefront.
-        field_deg, film_mm, object_distance_m: as for wavefront.
-        wavelength_nm: one or several, whose light is added; None is the design wavelength. weights: of several, None: equal.
-        method: "direct", the sum of the rays as plane waves, for any wavefront; "fft", the same by a Fourier transform, where
-          the wavefront is not too steep for one; "geometric", the rays themselves, without diffraction.
-        size: points across the array. pitch_um: from one to the next; None is a quarter of wavelength x f-number, up to half of
-          it for a spot that is larger than the array.
-        film_distance_mm: last vertex to the plane of the PSF; None: the film.
-        centre: of the array: "chief", where the chief ray of the first wavelength meets that plane, or "centroid", of the spot.
-        rays: at least so many for each wavelength; None: as many as the wavefront and the array need. Not used by "fft".
-        Returns a PSF. Raises InputError where no light passes, a glass is not known at a wavelength, or the rays given cannot
-        follow the wavefront.
+        Computes the point spread function (PSF) of one object point on the film from the exact wavefront.
+        field_deg, film_mm, object_distance_m: field point, see Lens.wavefront.
+        wavelength_nm: a wavelength, or several, whose PSFs are added incoherently; None: the design wavelength.
+        weights: relative amount of light at each wavelength; None: equal.
+        method: "direct": sum of the rays as plane waves, for any wavefront; "fft": the same sum by a Fourier transform, for
+          wavefronts that are not too steep; "geometric": density of the rays, without diffraction.
+        size: number of points across the array.
+        pitch_um: distance between points; None: a quarter of wavelength x f-number, or up to half of it if the spot is larger
+          than the array.
+        film_distance_mm: distance from the last vertex to the plane of the PSF; None: the film.
+        centre: centre of the array. "chief": intersection of the first wavelength's chief ray with that plane; "centroid":
+          centroid of the spot.
+        rays: minimum number of rays for each wavelength; None: as many as the wavefront and the array require. Not used by
+          "fft".
+        Returns a PSF. Raises InputError if no light passes, a glass is unknown at a wavelength, or the number of rays is too
+        small for the wavefront.
         """
     def removed(self, first: int, last: int | None = None) -> Lens:
         """
-        The lens without the surfaces of index first to last, from 0; None: first alone. What is left stays in
-        its place, film, focus group and zoom positions too. Raises InputError, and LensFileError where the lens cannot be
-        built.
+        Returns the lens without the surfaces of index first to last, from 0; last=None: without surface first.
+        The other surfaces and the film keep their positions; focus group and zoom positions are retained. Raises InputError,
+        and LensFileError if the resulting lens is invalid.
         """
     def reversed(self, film_distance_mm: float | None = None) -> Lens:
         """
-        The lens turned round, its last surface towards the scene, focused at infinity.
-        film_distance_mm: last vertex to film; None: where infinity is sharpest. Focus group and zoom positions
-        are kept. Raises LensFileError where infinity has no real image and no distance is given.
+        Returns the reversed lens, with its last surface towards the scene, focused at infinity. Focus group and
+        zoom positions are retained.
+        film_distance_mm: distance from the last vertex to the film; None: best focus for infinity.
+        Raises InputError unless the lens is centred and rotationally symmetric, and LensFileError if infinity has no real
+        image and film_distance_mm is None.
         """
     def save(self, path: str | os.PathLike[str]) -> None:
         """
-        Writes a lens file by its suffix: .toml, from which Lens.load makes an equal lens; .zmx, .seq, .json
-        (Optiland) or .roa (ray-optics), with a UserWarning for all that these cannot say; .osl, a camera of Blender
-        5. Raises InputError, also for a lens that OSL cannot express, and ImageFileError where no file can be
-        made.
+        Writes a lens file in the format of the path's suffix: .toml, from which Lens.load makes an equal lens;
+        .zmx, .seq, .json (Optiland) or .roa (ray-optics), with a UserWarning for each property that the format cannot
+        represent; .osl, a camera shader for Blender 5. Raises InputError for an unknown suffix, and for a lens that the shader
+        cannot represent; ImageFileError if the file cannot be written.
         """
     def scaled(self, factor: float) -> Lens:
         """
-        The lens with all lengths times factor: film, focus distance and zoom positions with it; coatings keep
-        their thickness. Raises InputError for a factor that is not positive and finite, and LensFileError where
-        the lens cannot be built.
+        Returns the lens with all lengths multiplied by factor, also film, focus distance and zoom positions;
+        coatings keep their thickness. Raises InputError for a factor that is not positive and finite, and LensFileError if
+        the resulting lens is invalid.
         """
     def seidel(
         self,
@@ -829,17 +1024,19 @@ class Lens:
         colours_nm: tuple[float, float] = (486.1327, 656.2725),
     ) -> Seidel:
         """
-        Third-order and primary chromatic aberrations, surface by surface, with conics, aspheres and mirrors
-        (W. T. Welford, Aberrations of Optical Systems, chapters 8 and 10).
-        field_deg: angle of the paraxial chief ray to the axis; positive: it rises towards +y and the film.
-        object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
-        colours_nm: the short and the long wavelength.
-        Returns a Seidel. Raises InputError for angles of 90 deg and more, and for an afocal lens.
+        Computes third-order and primary chromatic aberrations surface by surface, including conics, aspheres and
+        mirrors (W. T. Welford, Aberrations of Optical Systems, chapters 8 and 10).
+        field_deg: angle of the paraxial chief ray to the axis; positive: the light travels towards +y on its way to the film.
+        object_distance_m: distance from the object plane to the front vertex, inf allowed; None: the plane in focus.
+        wavelength_nm: wavelength of the monochromatic aberrations; None: the design wavelength.
+        colours_nm: the short and the long wavelength of the chromatic aberrations.
+        Returns a Seidel. Raises InputError for an angle of 90 degrees or more, and for an afocal lens.
         """
     def shifted(self, x_mm: float = 0.0, y_mm: float = 0.0) -> Lens:
         """
-        The lens moved sideways before the film, which stays. A lens that goes up, y_mm above 0, looks up.
-        Raises InputError where its first surface is moved alone, and LensFileError.
+        Returns the lens shifted sideways relative to the film, which stays, as a shift lens. x_mm, y_mm: along
+        the axes of the lens frame; a positive y_mm moves the field of view upwards.
+        Raises InputError if the first surface has a decentre or tilt of its own (returns=True), and LensFileError.
         """
     def spot(
         self,
@@ -854,32 +1051,35 @@ class Lens:
         pupil: ArrayLike | None = None,
     ) -> Spot:
         """
-        The spot of one object point on the film, or on a plane at film_distance_mm behind the last vertex.
-        field_deg: angle to the axis at which the light comes; positive: it rises towards +y and the film. Less than 180
-          for an object at infinity; less than 90, seen from the middle of the paraxial entrance pupil, for one nearer.
-        film_mm: (x, y), names the field by the film point, from the film's middle, at which the chief ray of the design
-          wavelength ends; in place of field_deg, and in both directions across the film.
-        object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
-        wavelength_nm: None is the design wavelength.
-        pattern, samples: "grid", the cells of a square of samples x samples; "rings", samples rings at Gauss's nodes,
-          whose means over a round stop are exact for smooth functions; "hexapolar", a middle ray and samples rings of 6, 12,
-          ... rays up to the edge, all of one weight.
+        Computes the spot diagram of one object point by real rays.
+        field_deg: field angle in degrees, between the incoming light and the axis, in the y-z plane; positive: the light
+          travels towards +y on its way to the film. Below 180 for an object at infinity. For a nearer object below 90, and as
+          seen from the centre of the paraxial entrance pupil.
+        film_mm: specifies the field instead of field_deg, by the film point (x, y), in mm from the film's centre, at which the
+          chief ray of the design wavelength ends. It may lie outside the y-z plane.
+        object_distance_m: distance from the object plane to the front vertex, inf allowed; None: the plane in focus.
+        wavelength_nm: wavelength; None: the design wavelength.
+        film_distance_mm: distance from the last vertex to the plane of the spot; None: the film.
+        pattern: arrangement of the rays on the stop. "grid": the cells of a square of samples x samples. "rings": rings
+          at the nodes of Gauss quadrature, whose weighted mean over a round stop is exact for smooth functions. "hexapolar": a
+          central ray and rings of 6, 12, ... rays up to the edge, of equal weights.
+        samples: cells along a side of the grid, or number of rings; 1 to 2048.
         pupil: (N, 2), points of the stop in units of its radius, instead of a pattern.
-        Rays fill the real stop: each is aimed at its point there within 1e-10 of the stop's radius. One for which no ray is
-        found ends as NO_CONVERGENCE, and what a rim blocks as VIGNETTED.
-        Returns a Spot. Raises InputError where no ray passes.
+        Rays fill the real stop: each is aimed at its point there within 1e-10 of the stop's radius. The status of a point for
+        which no ray is found is NO_CONVERGENCE, that of a ray which a rim blocks is VIGNETTED.
+        Returns a Spot. Raises InputError if no ray passes.
         """
     def stopped_down(self, f_number: float) -> Lens:
         """
-        The lens with its diaphragm closed to an f-number: that of the lens focused at infinity, as it is
-        engraved, whatever the lens is focused on. Raises InputError where it does not open that far.
+        Returns the lens with its diaphragm set to an f-number as engraved, which is that of the lens focused at
+        infinity, whatever the lens is focused on. Raises InputError if the diaphragm does not open that far.
         """
     def tilted(self, x_deg: float = 0.0, y_deg: float = 0.0, *, pivot_mm: float = 0.0) -> Lens:
         """
-        The lens turned before the film, which stays: about the x axis, then the turned y axis, each
-        counterclockwise as seen from its tip. The plane in focus turns with it (Scheimpflug).
-        pivot_mm: from the middle of the film towards the scene to the point about which it turns.
-        Raises InputError where its first surface is moved alone, and LensFileError.
+        Returns the lens tilted relative to the film, which stays, as a tilt lens: the plane in focus tilts
+        (Scheimpflug). x_deg, y_deg: rotations about the x axis, then about the rotated y axis, each counterclockwise as seen
+        from the tip of the axis. pivot_mm: distance of the pivot from the film centre, towards the scene.
+        Raises InputError if the first surface has a decentre or tilt of its own (returns=True), and LensFileError.
         """
     @overload
     def trace(
@@ -895,17 +1095,19 @@ class Lens:
         transmission: bool = False,
     ) -> TraceResult[DeviceArray, DeviceArray]:
         """
-        Traces rays surface by surface. origins_mm, directions: (N, 3), lens frame.
-        start: "film" (towards the scene) or "scene" (towards the film).
-        dtype: number type of the computation, float64 or float32; results are float64 arrays.
-        surface_count: cross only the first so many surfaces that the light meets; None: all.
-        device: for arrays of the host the CPU (None, "cpu"), a GPU ("cuda", "cuda:1"), or a GPU if there is
-        one ("auto"); results are arrays of numpy. Arrays with __cuda_array_interface__ or __dlpack__ in a GPU's
-        memory (torch, cupy, DeviceArray: float64 or float32, contiguous) are traced where they lie, and the
-        results are DeviceArrays.
-        transmission: work out transmission too, by polarisation ray tracing in float64, as Lens.transmission does; for
-        arrays of the host.
-        Returns a TraceResult. Raises InputError for wrong shapes, DeviceError; single bad rays end as BAD_INPUT.
+        Traces rays through the lens, surface by surface.
+        origins_mm, directions: (N, 3), lens frame. Each ray is the whole straight line through its origin.
+        wavelength_nm: None: the design wavelength.
+        start: "film": the light travels towards the scene; "scene": towards the film.
+        dtype: precision of the computation, float64 or float32; results are float64 arrays.
+        surface_count: number of surfaces to trace, in the order in which the light reaches them; None: all.
+        device: for arrays in host memory: "cpu" or None, a GPU ("cuda", "cuda:1"), or "auto" for a GPU if there is one;
+          results are numpy arrays. Arrays in a GPU's memory with __cuda_array_interface__ or __dlpack__ (torch, cupy,
+          DeviceArray; float64 or float32, contiguous) are traced on that GPU, and the results are DeviceArrays.
+        transmission: also computes the transmitted power by polarisation ray tracing in float64, see Lens.transmission; only
+          for arrays in host memory.
+        Returns a TraceResult. An invalid ray gets the status BAD_INPUT. Raises InputError for wrong shapes, and
+        DeviceError.
         """
     @overload
     def trace(
@@ -932,25 +1134,27 @@ class Lens:
         pupil: ArrayLike | None = None,
     ) -> float:
         """
-        Share of the power of unpolarised light that the lens lets through, of the light of one object point that passes
-        the rims: the mean over the part of the stop that it fills. Fresnel's or the films' losses at every surface; glass
-        itself absorbs nothing here. Surfaces of which the lens does not say how they are coated (unknown_coatings) are taken
-        for bare glass, mirrors for perfect ones.
-        field_deg: angle to the axis at which the light comes; positive: it rises towards +y and the film. Less than 180
-          for an object at infinity; less than 90, seen from the middle of the paraxial entrance pupil, for one nearer.
-        film_mm: (x, y), names the field by the film point, from the film's middle, at which the chief ray of the design
-          wavelength ends; in place of field_deg, and in both directions across the film.
-        object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
-        wavelength_nm: None is the design wavelength.
-        polarisation: "traced" follows both polarisations through the lens; "averaged" takes the mean of s and p at each
-          surface, as if light were unpolarised between them.
-        pattern, samples: "grid", the cells of a square of samples x samples; "rings", samples rings at Gauss's nodes,
-          whose means over a round stop are exact for smooth functions; "hexapolar", a middle ray and samples rings of 6, 12,
-          ... rays up to the edge, all of one weight.
+        Computes the transmittance of the lens for unpolarised light of one object point: the mean over the part
+        of the stop that the light fills, without the rays that the rims block. It includes the losses by Fresnel reflection or
+        by the coating at every surface, but no absorption in glass. Surfaces without a specified coating (unknown_coatings)
+        count as bare glass or as perfect mirrors.
+        field_deg: field angle in degrees, between the incoming light and the axis, in the y-z plane; positive: the light
+          travels towards +y on its way to the film. Below 180 for an object at infinity. For a nearer object below 90, and as
+          seen from the centre of the paraxial entrance pupil.
+        film_mm: specifies the field instead of field_deg, by the film point (x, y), in mm from the film's centre, at which the
+          chief ray of the design wavelength ends. It may lie outside the y-z plane.
+        object_distance_m: distance from the object plane to the front vertex, inf allowed; None: the plane in focus.
+        wavelength_nm: wavelength; None: the design wavelength.
+        polarisation: "traced" follows both polarisations through the lens; "averaged" takes the mean of s and p at
+          each surface, as if the light were unpolarised between surfaces.
+        pattern: arrangement of the rays on the stop. "grid": the cells of a square of samples x samples. "rings": rings
+          at the nodes of Gauss quadrature, whose weighted mean over a round stop is exact for smooth functions. "hexapolar": a
+          central ray and rings of 6, 12, ... rays up to the edge, of equal weights.
+        samples: cells along a side of the grid, or number of rings; 1 to 2048.
         pupil: (N, 2), points of the stop in units of its radius, instead of a pattern.
-        Rays fill the real stop: each is aimed at its point there within 1e-10 of the stop's radius. One for which no ray is
-        found ends as NO_CONVERGENCE, and what a rim blocks as VIGNETTED.
-        Raises InputError where no ray passes, or a material is not known at that wavelength.
+        Rays fill the real stop: each is aimed at its point there within 1e-10 of the stop's radius. The status of a point for
+        which no ray is found is NO_CONVERGENCE, that of a ray which a rim blocks is VIGNETTED.
+        Returns a fraction, 0 to 1. Raises InputError if no ray passes, or a material is unknown at the wavelength.
         """
     def wavefront(
         self,
@@ -968,36 +1172,43 @@ class Lens:
         pupil: ArrayLike | None = None,
     ) -> Wavefront:
         """
-        The wavefront of one object point against a sphere, by real rays, in double precision.
-        field_deg: angle to the axis at which the light comes; positive: it rises towards +y and the film. Less than 180
-          for an object at infinity; less than 90, seen from the middle of the paraxial entrance pupil, for one nearer.
-        film_mm: (x, y), names the field by the film point, from the film's middle, at which the chief ray of the design
-          wavelength ends; in place of field_deg, and in both directions across the film.
-        object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
-        wavelength_nm: None is the design wavelength.
-        film_distance_mm: last vertex to the plane of the image point; None: the film.
-        reference: the sphere's centre: "chief", where the chief ray (through the middle of the real stop) meets that plane, or
-          "centroid", of the spot there. Its radius is the distance from the chief ray's point to the exit pupil on that ray.
-        exit_pupil: "real", where the chief ray crosses the axis (on the axis, the paraxial exit pupil), as in CODE V's
-          listings; or "paraxial", where it crosses the plane of the paraxial exit pupil, as in OpticStudio.
-        remove: None; "tilt" or "focus" (tilt and focus) are fitted in x, y, x^2 + y^2 of the stop and taken away.
-        pattern, samples: "grid", the cells of a square of samples x samples; "rings", samples rings at Gauss's nodes,
-          whose means over a round stop are exact for smooth functions; "hexapolar", a middle ray and samples rings of 6, 12,
-          ... rays up to the edge, all of one weight.
+        Computes the wavefront of one object point relative to a reference sphere, by real rays, in double
+        precision.
+        field_deg: field angle in degrees, between the incoming light and the axis, in the y-z plane; positive: the light
+          travels towards +y on its way to the film. Below 180 for an object at infinity. For a nearer object below 90, and as
+          seen from the centre of the paraxial entrance pupil.
+        film_mm: specifies the field instead of field_deg, by the film point (x, y), in mm from the film's centre, at which the
+          chief ray of the design wavelength ends. It may lie outside the y-z plane.
+        object_distance_m: distance from the object plane to the front vertex, inf allowed; None: the plane in focus.
+        wavelength_nm: wavelength; None: the design wavelength.
+        film_distance_mm: distance from the last vertex to the plane of the image point; None: the film.
+        reference: centre of the reference sphere. "chief": intersection of the chief ray (through the centre of the real stop)
+          with that plane; "centroid": centroid of the spot there. The sphere's radius is the distance along the chief ray from
+          its intersection to the exit pupil.
+        exit_pupil: position of the exit pupil on the chief ray. "real": intersection with the axis (for a field on the axis,
+          the paraxial exit pupil), as in CODE V's listings; "paraxial": intersection with the plane of the paraxial exit
+          pupil, as in OpticStudio.
+        remove: terms that are fitted over the stop and subtracted. None: no terms; "tilt": x and y; "focus": x, y and
+          x^2 + y^2.
+        pattern: arrangement of the rays on the stop. "grid": the cells of a square of samples x samples. "rings": rings
+          at the nodes of Gauss quadrature, whose weighted mean over a round stop is exact for smooth functions. "hexapolar": a
+          central ray and rings of 6, 12, ... rays up to the edge, of equal weights.
+        samples: cells along a side of the grid, or number of rings; 1 to 2048.
         pupil: (N, 2), points of the stop in units of its radius, instead of a pattern.
-        Rays fill the real stop: each is aimed at its point there within 1e-10 of the stop's radius. One for which no ray is
-        found ends as NO_CONVERGENCE, and what a rim blocks as VIGNETTED.
-        Returns a Wavefront. Raises InputError where no ray passes, or no reference sphere can be laid.
+        Rays fill the real stop: each is aimed at its point there within 1e-10 of the stop's radius. The status of a point for
+        which no ray is found is NO_CONVERGENCE, that of a ray which a rim blocks is VIGNETTED.
+        Returns a Wavefront. Raises InputError if no ray passes, or no reference sphere exists.
         """
     def wide_open(self) -> Lens:
         """
-        With the diaphragm as wide as its opening.
+        Returns the lens with its diaphragm fully open.
         """
     def with_coating(self, coating: str | Coating, surfaces: Sequence[int] | None = None) -> Lens:
         """
-        The lens with another coating, as Surface() takes it, on the surfaces of these indices; None: on all that
-        it is for, a mirror's on all mirrors, any other on all faces between air and glass. Cemented faces stay as they are.
-        Raises InputError, and LensFileError where a coating does not fit its surface.
+        Returns the lens with another coating.
+        coating: as for Surface(). surfaces: indices of the surfaces to coat, from 0; None: all surfaces for which the coating
+        is meant: all mirrors for a mirror's coating, otherwise all faces between air and glass, without cemented faces.
+        Raises InputError, and LensFileError if a coating does not suit its surface.
         """
     def with_element_tilted(
         self,
@@ -1013,24 +1224,24 @@ class Lens:
         pivot_mm: float = 0.0,
     ) -> Lens:
         """
-        The lens with the surfaces of index first to last, from 0, moved as one rigid piece; None: first alone.
-        The rest and the film stay in place. The piece is decentred, then turned about x, its new y and its new
-        z, as a surface is by its tilt_deg. pivot_mm: how far behind the first vertex the point lies that it turns
-        about. Raises InputError, and LensFileError where the lens cannot be built.
+        Returns the lens with the surfaces of index first to last, from 0, moved as one rigid element; last=None:
+        surface first alone. The other surfaces and the film stay. The element is displaced by decentre_*_mm, then rotated about
+        x, the new y and the new z, like a surface by its tilt_deg. pivot_mm: distance of the pivot behind the first vertex.
+        Raises InputError, and LensFileError if the resulting lens is invalid.
         """
     def with_film(self, width_mm: float, height_mm: float) -> Lens:
         """
-        The lens for another film, at its place. Raises LensFileError for sizes that are none.
+        Returns the lens with another film size, at the same position. Raises LensFileError for invalid sizes.
         """
     def with_film_radius(self, radius_of_curvature_mm: float) -> Lens:
         """
-        The lens for a film of this radius of curvature: below 0 hollow towards the lens, inf flat.
-        Raises LensFileError where the film does not reach its corners.
+        Returns the lens with a film of this radius of curvature; negative: concave towards the lens; inf: flat.
+        Raises LensFileError if the radius is too short for the film's corners.
         """
     def with_iris(self, blades: int, rounding: float | None = None, rotation_deg: float | None = None) -> Lens:
         """
-        The lens with another diaphragm: blades, rounding and rotation as Lens() takes them; None stays. The
-        f-number stays too, because it is the open area that it means. Raises LensFileError.
+        Returns the lens with another shape of the diaphragm. blades, rounding, rotation_deg: see Lens(); None:
+        unchanged. The f-number stays, because the open area does. Raises LensFileError.
         """
     def with_rings(
         self,
@@ -1041,8 +1252,11 @@ class Lens:
         opens_as_far_as_it_can: bool = False,
     ) -> Lens:
         """
-        The lens with its rings set, as by zoomed (without indices), stopped_down and focused; None: a ring stays.
-        opens_as_far_as_it_can: a lens that is not as fast as the f-number is wide open. Raises InputError.
+        Returns the lens with its rings set; None: a ring is not moved.
+        zoom: name of a zoom position, or a focal length in mm, see Lens.zoomed. f_number: see Lens.stopped_down. focus_m: see
+        Lens.focused.
+        opens_as_far_as_it_can: if the lens is slower than f_number, open it fully instead of raising an error.
+        Raises InputError.
         """
     def with_surface(
         self,
@@ -1072,134 +1286,185 @@ class Lens:
         obscurations: Sequence[dict[str, Any]] | None = None,
     ) -> Lens:
         """
-        The lens with one surface changed: its index from 0, as in surfaces, and what Surface() takes. What is not
-        given stays; so do focus group, iris, film and title, and the film where it is: focused() brings the picture
-        into focus again. Raises InputError, and LensFileError where the lens cannot be built.
+        Returns the lens with one surface changed.
+        index: index of the surface in surfaces, from 0. Other arguments: as for Surface(); those that are omitted stay.
+        Everything else stays, too, also the position of the film: focused() restores the focus. Raises InputError, and
+        LensFileError if the resulting lens is invalid.
         """
     def with_surfaces(self, surfaces: Mapping[int, Surface]) -> Lens:
         """
-        The lens with other surfaces in place of some: a dict of index, from 0, and Surface. All else stays, as
-        in with_surface. Raises InputError, and LensFileError where the lens cannot be built.
+        Returns the lens with some surfaces replaced. surfaces: dict of index, from 0, to Surface. Everything
+        else stays, see Lens.with_surface. Raises InputError, and LensFileError if the resulting lens is invalid.
         """
     def zoomed(self, position: str | int | float) -> Lens:
         """
-        The lens in another zoom position: its name, its index, or, as a float, a focal length in mm between
-        those of the positions. The plane in focus stays, an open diaphragm stays open, and a closed one keeps
-        its f-number as far as it opens. Between positions, spacings lie on monotone cubics over the logarithm
-        of the focal length, which is that of the lens at rest. Raises InputError.
+        Returns the lens in another zoom position.
+        position: its name (str), its index (int), or a focal length in mm (float) between those of the positions, of the
+          lens focused at infinity.
+        The plane in focus stays. A wide-open diaphragm stays wide open; a closed one keeps its f-number, as far as it can
+        open. Between positions, spacings are interpolated by monotone cubics over the logarithm of the focal length.
+        Raises InputError.
         """
     @property
-    def allow_overlap(self) -> bool: ...
+    def allow_overlap(self) -> bool:
+        """
+        True if faces may cross, see Lens().
+        """
     @property
     def f_number(self) -> float:
         """
-        As engraved: of the lens focused at infinity, with its diaphragm as it stands. A lens that cannot be
-        focused at infinity has that of first_order().
+        f-number as engraved: of the lens focused at infinity, with its current diaphragm; that of first_order()
+        if the lens cannot be focused at infinity.
         """
     @property
-    def film_distance_mm(self) -> float: ...
+    def film_distance_mm(self) -> float:
+        """
+        Distance from the last vertex to the film.
+        """
     @property
     def film_frame(self) -> NDArray[np.float64]:
         """
-        (4, 3): x, y and z axis of the film and its middle in mm, lens frame. Light comes with growing z.
+        (4, 3): x, y and z axis (unit) and centre (mm) of the film, lens frame. Light arrives in +z direction of this frame.
         """
     @property
-    def film_mm(self) -> tuple[float, float]: ...
+    def film_mm(self) -> tuple[float, float]:
+        """
+        (width, height) of the film that a Camera uses by default.
+        """
     @property
     def film_position_mm(self) -> float:
         """
-        Front vertex to film.
+        Distance from the front vertex to the film.
         """
     @property
-    def film_radius_of_curvature_mm(self) -> float: ...
+    def film_radius_of_curvature_mm(self) -> float:
+        """
+        Radius of curvature of the film; negative: concave towards the lens; inf: flat.
+        """
     @property
-    def focus_distance_m(self) -> float: ...
+    def focus_distance_m(self) -> float:
+        """
+        Distance from the plane in focus to the film; inf allowed.
+        """
     @property
     def focus_group(self) -> tuple[int, int] | None:
         """
-        (first, last) index; None: the whole lens moves.
+        (first, last) index of the surfaces that move for focusing; None: the whole lens moves.
         """
     @property
-    def iris_blades(self) -> int: ...
+    def iris_blades(self) -> int:
+        """
+        Number of diaphragm blades; 0: the diaphragm is round.
+        """
     @property
-    def iris_rotation_deg(self) -> float: ...
+    def iris_rotation_deg(self) -> float:
+        """
+        Rotation of the diaphragm about the axis.
+        """
     @property
-    def iris_rounding(self) -> float: ...
+    def iris_rounding(self) -> float:
+        """
+        0 for straight blade edges to 1 for a circle.
+        """
     @property
     def is_rotational(self) -> bool:
         """
-        Whether this is a centred lens of revolution: no surface is tilted or decentred.
+        True if the lens is rotationally symmetric: centred, and without freeform surfaces.
         """
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """
+        Name, which identifies a bundled lens.
+        """
     @property
-    def nearest_focus_m(self) -> float: ...
+    def nearest_focus_m(self) -> float:
+        """
+        Nearest focus distance, from the object to the film; 0: limited only by the optics.
+        """
     @property
-    def source(self) -> str: ...
+    def source(self) -> str:
+        """
+        Origin of the prescription, such as a patent; may be empty.
+        """
     @property
-    def stop_index(self) -> int: ...
+    def stop_index(self) -> int:
+        """
+        Index of the aperture stop in surfaces.
+        """
     @property
-    def stop_semi_diameter_mm(self) -> float: ...
+    def stop_semi_diameter_mm(self) -> float:
+        """
+        Radius of the diaphragm's current opening.
+        """
     @property
     def surface_frames(self) -> NDArray[np.float64]:
         """
-        (N, 4, 3): x, y and z axis of each surface and its vertex in mm, lens frame.
+        (N, 4, 3): x, y and z axis (unit) and vertex (mm) of each surface, lens frame.
         """
     @property
-    def surfaces(self) -> list[Surface]: ...
+    def surfaces(self) -> list[Surface]:
+        """
+        List of Surfaces, from the scene to the film.
+        """
     @property
     def t_stop(self) -> float:
         """
-        f-number / sqrt(transmittance) at the design wavelength, the transmittance being that of the ray along
-        the axis times the share of the pupil that no central obstruction takes: the f-number of a lens without losses that
-        gives as bright a picture there. inf where the lens has no f-number.
+        T-stop: f-number / sqrt(transmittance) at the design wavelength, which is the f-number of a lossless lens
+        with the same exposure at the centre of the picture. The transmittance is that of the axial ray, times the fraction of
+        the pupil that is not centrally obstructed. inf if the lens has no f-number.
         """
     @property
-    def title(self) -> str: ...
+    def title(self) -> str:
+        """
+        Description in one line; may be empty.
+        """
     @property
     def unknown_coatings(self) -> list[int]:
         """
-        Indices of the surfaces of which the lens does not say how they are coated: glass in air, taken for bare,
-        and mirrors, taken for perfect. Cemented faces are bare without being said so.
+        Indices of the surfaces without a specified coating: faces between glass and air, which count as bare,
+        and mirrors, which count as perfect. Cemented faces are not listed; they are bare.
         """
     @property
     def vertices_mm(self) -> list[float]:
         """
-        z of each vertex; of surfaces that are moved, along the axis that is unfolded.
+        z of each surface's vertex; if surfaces are tilted or decentred, the position along the unfolded axis.
         """
     @property
-    def wavelength_nm(self) -> float: ...
+    def wavelength_nm(self) -> float:
+        """
+        Design wavelength.
+        """
     @property
     def zoom_focal_lengths_mm(self) -> list[float]:
         """
-        Of the lens at rest in each of its zoom positions.
+        Focal length in each zoom position, of the lens focused at infinity.
         """
     @property
     def zoom_position(self) -> str | None:
         """
-        The current one, or the nearest to it; None: the lens does not zoom.
+        Name of the current, or the nearest, zoom position; None if the lens does not zoom.
         """
     @property
     def zoom_positions(self) -> list[str]:
         """
-        Names of the zoom positions; empty: the focal length is fixed.
+        Names of the zoom positions; empty if the focal length is fixed.
         """
 
 def lens_names() -> list[str]:
     """
-    Names of the bundled lenses.
+    Returns the names of the bundled lenses.
     """
 
 @final
 class DeviceArray:
     """
-    Numbers in a GPU's memory, in C order. torch.from_dlpack, cupy.from_dlpack, torch.as_tensor and cupy.asarray
-    share that memory without a copy, on any stream; numpy.asarray copies it to the host. It is freed with the
-    last of those who share it.
+    Array in a GPU's memory, in C order. torch.from_dlpack, cupy.from_dlpack, torch.as_tensor and cupy.asarray
+    share its memory without a copy, on any stream; numpy.asarray copies it to the host. The memory is freed when the
+    last array that shares it is deleted.
     """
     def __array__(self, dtype: DTypeLike | None = None, *, copy: bool | None = None) -> NDArray[Any]:
         """
-        For numpy.asarray. Raises ValueError for copy=False, and DeviceError.
+        Returns a copy in the host's memory, for numpy.asarray. Raises ValueError for copy=False, and DeviceError.
         """
     def __dlpack__(
         self,
@@ -1210,24 +1475,25 @@ class DeviceArray:
         copy: bool | None = None,
     ) -> CapsuleType:
         """
-        As the Python array API standard has it; the numbers are complete, so that any stream may read them.
-        Raises BufferError for a device other than its own and the host, and for the host with copy=False.
+        Returns a DLPack capsule, as the Python array API standard defines it. All writes have completed, so that
+        any stream may read the array. Raises BufferError for a device other than the array's own GPU and the host, and
+        for the host with copy=False.
         """
     def __dlpack_device__(self) -> tuple[int, int]: ...
     def __len__(self) -> int: ...
     def numpy(self) -> NDArray[Any]:
         """
-        A copy in the host's memory. Raises DeviceError.
+        Returns a copy in the host's memory. Raises DeviceError.
         """
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]:
         """
-        Version 3.
+        Numba's CUDA array interface, version 3.
         """
     @property
     def device(self) -> str:
         """
-        As in `device` of Lens.trace: "cuda:0".
+        Name of the GPU, as `device` of Lens.trace: "cuda:0".
         """
     @property
     def dtype(self) -> np.dtype[Any]:
@@ -1235,7 +1501,10 @@ class DeviceArray:
         np.dtype[Any]: float64, float32, int32 or uint8.
         """
     @property
-    def shape(self) -> tuple[int, ...]: ...
+    def shape(self) -> tuple[int, ...]:
+        """
+        Length of each dimension.
+        """
 
 class RayStatus(IntEnum):
     OK = 0
@@ -1248,24 +1517,24 @@ class RayStatus(IntEnum):
 @final
 class TraceResult(Generic[_Doubles, _Integers]):
     """
-    Rays after a lens, lens frame. Arrays of numpy; DeviceArrays where the rays came in a GPU's memory.
+    Rays behind a lens, in the lens frame: numpy arrays, or DeviceArrays if the input was in a GPU's memory. See Lens.trace.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
     @property
     def directions(self) -> _Doubles:
         """
-        (N, 3), unit.
+        (N, 3): unit directions behind that surface.
         """
     @property
     def optical_path_mm(self) -> _Doubles:
         """
-        (N,): index times distance, from the origin.
+        (N,): optical path length (index times distance) from the ray's origin.
         """
     @property
     def origins_mm(self) -> _Doubles:
         """
-        (N, 3): on the last surface met. Of a ray whose status is not OK, where it ended: ask status before you use it.
+        (N, 3): intersection with the last surface that the ray reached. If status is not OK, that is the point where the ray ended.
         """
     @property
     def status(self) -> _Integers:
@@ -1275,21 +1544,21 @@ class TraceResult(Generic[_Doubles, _Integers]):
     @property
     def surface_index(self) -> _Integers:
         """
-        (N,): surface at which the ray ended, from 0; -1: bad input.
+        (N,): index of the last surface that the ray reached, from 0; -1 for BAD_INPUT.
         """
     @property
     def transmission(self) -> NDArray[np.float64] | None:
         """
-        (N,): share of the power of unpolarised light that is left, 0 where the status is not OK; None where it
-        was not asked for.
+        (N,): transmitted fraction of the power of unpolarised light; 0 if status is not OK. None if it was not
+        requested.
         """
 
 @final
 class Seidel:
     """
-    Third-order aberrations surface by surface: arrays of shape (S,), one entry for each of the lens's surfaces.
-    The sum over the surfaces is the lens's. Transverse aberrations are those of a ray at the edge of the stop and of
-    the field, along y; names and signs as CODE V's.
+    Third-order aberrations surface by surface: arrays of shape (S,), one entry for each of the lens's surfaces;
+    their sums are the aberrations of the lens. Transverse aberrations (mm) are those of a ray at the edge of the stop and
+    of the field, along y, with names and signs as in CODE V. See Lens.seidel.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
@@ -1298,158 +1567,174 @@ class Seidel:
     @property
     def axial_colour_mm(self) -> NDArray[np.float64]:
         """
-        (S,): AX, between the two colours, of the marginal ray.
+        (S,): transverse aberration of the marginal ray between the two colours (CODE V: AX).
         """
     @property
     def chief_height_mm(self) -> NDArray[np.float64]:
         """
-        (S,): paraxial ray from the edge of the field through the middle of the stop.
+        (S,): height of the paraxial ray from the edge of the field through the centre of the stop.
         """
     @property
     def chief_invariant(self) -> NDArray[np.float64]:
         """
-        (S,): index times angle of incidence.
+        (S,): refractive index times paraxial angle of incidence of the chief ray.
         """
     @property
     def chief_slope(self) -> NDArray[np.float64]:
         """
-        (S,): behind the surface.
+        (S,): slope of the chief ray behind each surface.
         """
     @property
     def coefficients_waves(self) -> NDArray[np.float64]:
         """
-        (S, 7): W040, W131, W222, W220, W311, and of colour W020, W111, in
-        W = W040 r^4 + W131 h r^3 cos + W222 h^2 r^2 cos^2 + W220 h^2 r^2 + W311 h^3 r cos, with r and h as shares of the
-        pupil's radius and of the field.
+        (S, 7): wavefront coefficients W040, W131, W222, W220, W311, and the chromatic ones W020 and W111, in
+        waves: W = W040 r^4 + W131 h r^3 cos(phi) + W222 h^2 r^2 cos^2(phi) + W220 h^2 r^2 + W311 h^3 r cos(phi), with r the
+        pupil radius and h the field, both relative to their maximum, and phi the azimuth in the pupil from the y axis.
         """
     @property
     def colour_mm(self) -> NDArray[np.float64]:
         """
-        (S, 2): C_I and C_II, axial and lateral colour, short less long wavelength.
+        (S, 2): chromatic sums C_I (axial colour) and C_II (lateral colour), short minus long wavelength.
         """
     @property
     def distortion_mm(self) -> NDArray[np.float64]:
         """
-        (S,): DST.
+        (S,): transverse distortion (CODE V: DST).
         """
     @property
-    def lagrange_invariant_mm(self) -> float: ...
+    def lagrange_invariant_mm(self) -> float:
+        """
+        Lagrange invariant of the marginal and the chief ray.
+        """
     @property
     def lateral_colour_mm(self) -> NDArray[np.float64]:
         """
-        (S,): LAT, of the chief ray.
+        (S,): transverse aberration of the chief ray between the two colours (CODE V: LAT).
         """
     @property
     def marginal_height_mm(self) -> NDArray[np.float64]:
         """
-        (S,): paraxial ray to the edge of the stop.
+        (S,): height of the paraxial ray through the edge of the stop.
         """
     @property
     def marginal_invariant(self) -> NDArray[np.float64]:
         """
-        (S,): index times angle of incidence.
+        (S,): refractive index times paraxial angle of incidence of the marginal ray.
         """
     @property
     def marginal_slope(self) -> NDArray[np.float64]:
         """
-        (S,): behind the surface.
+        (S,): slope of the marginal ray behind each surface.
         """
     @property
     def petzval_curvature_per_mm(self) -> NDArray[np.float64]:
         """
-        (S,): PTZ; their sum is the curvature of the Petzval surface.
+        (S,): contributions to the curvature of the Petzval surface (CODE V: PTZ).
         """
     @property
     def petzval_mm(self) -> NDArray[np.float64]:
         """
-        (S,): PTB, the blur of the Petzval surface.
+        (S,): transverse blur due to the Petzval surface (CODE V: PTB).
         """
     @property
     def sagittal_astigmatism_mm(self) -> NDArray[np.float64]:
         """
-        (S,): SAS, the blur of the sagittal image surface.
+        (S,): transverse blur due to the sagittal image surface (CODE V: SAS).
         """
     @property
     def seidel_mm(self) -> NDArray[np.float64]:
         """
-        (S, 5): the Seidel sums S_I to S_V; a positive S_I is an undercorrected surface's.
+        (S, 5): Seidel sums S_I to S_V; S_I is positive for undercorrected spherical aberration.
         """
     @property
     def spherical_mm(self) -> NDArray[np.float64]:
         """
-        (S,): SA.
+        (S,): transverse spherical aberration (CODE V: SA).
         """
     @property
     def tangential_astigmatism_mm(self) -> NDArray[np.float64]:
         """
-        (S,): TAS, the blur of the tangential image surface.
+        (S,): transverse blur due to the tangential image surface (CODE V: TAS).
         """
     @property
     def tangential_coma_mm(self) -> NDArray[np.float64]:
         """
-        (S,): TCO.
+        (S,): transverse tangential coma (CODE V: TCO).
         """
     @property
-    def wavelength_nm(self) -> float: ...
+    def wavelength_nm(self) -> float:
+        """
+        Wavelength of the monochromatic aberrations.
+        """
 
 @final
 class Ghost:
     """
-    Light that two surfaces reflect on its way to the film: first `first`, back towards the
-    scene, then `second`, in front of it. Surfaces are numbered from 0, as in Lens.surfaces; the film has the number
-    behind the last one's.
+    Ghost image: light that two surfaces reflect on its way to the film. Surface `first`
+    reflects it back towards the scene, then surface `second`, in front of `first`, forward again. Indices as in
+    Lens.surfaces; the index of the film is the number of surfaces.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     @property
     def back_focal_distance_mm(self) -> float:
         """
-        Last vertex to where the ghost of a point at infinity is sharp; negative in front of it.
+        Distance from the last vertex to the ghost of a point at infinity; negative in front of it.
         """
     @property
-    def effective_focal_length_mm(self) -> float: ...
+    def effective_focal_length_mm(self) -> float:
+        """
+        Focal length of the optical path with both reflections.
+        """
     @property
-    def first(self) -> int: ...
+    def first(self) -> int:
+        """
+        Index of the surface that the light reaches first, or of the film.
+        """
     @property
-    def second(self) -> int: ...
+    def second(self) -> int:
+        """
+        Index of the surface in front of it that reflects the light again.
+        """
     @property
     def share(self) -> float | None:
         """
-        What it brings to the film of the light that the lens itself brings there, of light that comes
-        from all sides alike: its brightness in veiling glare, and about that of a lamp's ghost over the film. None where
-        Lens.ghost made it.
+        Light that the ghost path brings to the film, relative to the light of the direct path, for a
+        scene of uniform radiance: its contribution to veiling glare, and roughly the relative brightness of a lamp's ghost
+        that spreads over the film. None if the ghost is the result of Lens.ghost.
         """
 
 @final
 class AimedRays:
     """
-    Rays of one object point, in front of the lens. Lens frame.
+    Rays of one object point in front of the lens, in the lens frame. See Lens.aim.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
     @property
     def directions(self) -> NDArray[np.float64]:
         """
-        (N, 3), unit; nan where status is not OK.
+        (N, 3): unit vectors in the direction of the light; nan if status is not OK.
         """
     @property
     def origins_mm(self) -> NDArray[np.float64]:
         """
-        (N, 3): in the plane through the middle of the paraxial entrance pupil across the light, which may lie
-        behind the front surface: the ray is that straight line, also in front of it. Where film_mm names the field,
-        or the lens is not of revolution: through where the chief ray meets the front surface. nan where status is not OK.
+        (N, 3): intersections of the rays with the plane through the centre of the paraxial entrance pupil,
+        perpendicular to the light. It may lie behind the front surface; the ray is the whole straight line. If film_mm
+        specifies the field, or the lens is not rotationally symmetric, the plane goes through the chief ray's
+        intersection with the front surface. nan if status is not OK.
         """
     @property
     def status(self) -> NDArray[np.int32]:
         """
-        (N,): RayStatus values; NO_CONVERGENCE where no ray was found that hits the point.
+        (N,): RayStatus values; NO_CONVERGENCE if no ray was found that hits the point of the stop.
         """
 
 @final
 class Wavefront:
     """
-    Optical path differences of one object point over the stop, in waves: positive where the wavefront is ahead
-    of the reference sphere. Means are over the area of the open stop.
+    Optical path differences (OPD) of one object point over the stop, in waves; positive where the wavefront is
+    ahead of the reference sphere. Means are over the area of the open stop. See Lens.wavefront.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
@@ -1457,124 +1742,140 @@ class Wavefront:
     def __deepcopy__(self, memo: object) -> Self: ...
     def map_waves(self) -> NDArray[np.float64]:
         """
-        (samples, samples): opd_waves of the pattern "grid" as a picture, rows from the lowest y, columns from
-        the lowest x; nan outside. Raises InputError for other patterns.
+        Returns opd_waves of the pattern "grid" as an array of shape (samples, samples), rows from the lowest y,
+        columns from the lowest x; nan where no ray passes. Raises InputError for other patterns.
         """
     @property
     def centre_mm(self) -> tuple[float, float, float]:
         """
-        (x, y, z) of the reference sphere's centre, lens frame.
+        (x, y, z) of the reference sphere's centre in mm, lens frame.
         """
     @property
     def opd_waves(self) -> NDArray[np.float64]:
         """
-        (N,): less that of the chief ray, if nothing is removed; nan where no ray passes.
+        (N,): OPD of each ray, relative to the chief ray if remove is None; nan if the ray does not pass.
         """
     @property
-    def peak_to_valley_waves(self) -> float: ...
+    def peak_to_valley_waves(self) -> float:
+        """
+        Largest minus smallest OPD, in waves.
+        """
     @property
     def pupil(self) -> NDArray[np.float64]:
         """
-        (N, 2): x and y on the aperture stop, as shares of the radius of the circle that holds its opening.
+        (N, 2): points (x, y) on the aperture stop, in units of the radius of the stop's bounding circle.
         """
     @property
     def reference_radius_mm(self) -> float:
         """
-        Of the reference sphere; positive where the light runs from the exit pupil to the centre, inf for a plane.
+        Radius of the reference sphere; positive if the light travels from the exit pupil to the sphere's centre, inf for a plane.
         """
     @property
     def rms_waves(self) -> float:
         """
-        About the mean.
+        RMS of the OPD about its mean, in waves.
         """
     @property
     def status(self) -> NDArray[np.int32]:
         """
-        (N,): RayStatus values; NO_CONVERGENCE where no ray was found that hits the point.
+        (N,): RayStatus values; NO_CONVERGENCE if no ray was found that hits the point of the stop.
         """
     @property
     def stop_radius_mm(self) -> float:
         """
-        Unit of coordinates in the pupil.
+        Radius of the stop's bounding circle, the unit of pupil.
         """
     @property
     def strehl(self) -> float:
         """
-        |mean of exp(2 pi i W)|^2.
+        Strehl ratio |mean of exp(2 pi i OPD)|^2.
         """
     @property
     def strehl_marechal(self) -> float:
         """
-        Marechal's approximation in Mahajan's form, exp(-(2 pi rms)^2).
+        Strehl ratio by Marechal's approximation in Mahajan's form, exp(-(2 pi rms_waves)^2).
         """
     @property
-    def wavelength_nm(self) -> float: ...
+    def wavelength_nm(self) -> float:
+        """
+        Wavelength.
+        """
     @property
     def weights(self) -> NDArray[np.float64]:
         """
-        (N,): shares of the circle's area for which the rays stand; their sum is 1.
+        (N,): fraction of the area of the stop's bounding circle that each ray represents; the sum is 1.
         """
 
 @final
 class Spot:
     """
-    Where rays of one object point meet a plane behind the lens. mm from the axis.
+    Spot diagram: intersections of the rays of one object point with a plane behind the lens, in
+    mm from the axis. See Lens.spot.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     @property
-    def centroid_mm(self) -> tuple[float, float]: ...
+    def centroid_mm(self) -> tuple[float, float]:
+        """
+        (x, y) of the weighted mean of the intersections.
+        """
     @property
     def chief_ray_mm(self) -> tuple[float, float]:
         """
-        Of the ray through the middle of the stop, even where the lens blocks it.
+        (x, y) of the ray through the centre of the stop, even if the lens blocks it.
         """
     @property
     def directions(self) -> NDArray[np.float64]:
         """
-        (N, 3), unit, of the rays where they meet the plane; nan where no ray passes.
+        (N, 3): unit direction of each ray behind the lens; nan if the ray does not pass.
         """
     @property
-    def max_radius_about_chief_ray_mm(self) -> float: ...
+    def max_radius_about_chief_ray_mm(self) -> float:
+        """
+        Largest distance of an intersection from that of the chief ray.
+        """
     @property
     def max_radius_mm(self) -> float:
         """
-        About the centroid.
+        Largest distance of an intersection from the centroid.
         """
     @property
     def points_mm(self) -> NDArray[np.float64]:
         """
-        (N, 2): x and y; nan where no ray passes.
+        (N, 2): intersection (x, y) of each ray; nan if the ray does not pass.
         """
     @property
     def pupil(self) -> NDArray[np.float64]:
         """
-        (N, 2): x and y on the aperture stop, as shares of the radius of the circle that holds its opening.
+        (N, 2): points (x, y) on the aperture stop, in units of the radius of the stop's bounding circle.
         """
     @property
-    def rms_radius_about_chief_ray_mm(self) -> float: ...
+    def rms_radius_about_chief_ray_mm(self) -> float:
+        """
+        RMS distance of the intersections from that of the chief ray.
+        """
     @property
     def rms_radius_mm(self) -> float:
         """
-        About the centroid.
+        RMS distance of the intersections from the centroid.
         """
     @property
     def status(self) -> NDArray[np.int32]:
         """
-        (N,): RayStatus values; NO_CONVERGENCE where no ray was found that hits the point.
+        (N,): RayStatus values; NO_CONVERGENCE if no ray was found that hits the point of the stop.
         """
     @property
     def weights(self) -> NDArray[np.float64]:
         """
-        (N,): shares of the circle's area for which the rays stand; their sum is 1.
+        (N,): fraction of the area of the stop's bounding circle that each ray represents; the sum is 1.
         """
 
 @final
 class PSF:
     """
-    Point spread function: where the light of one object point goes on the film, as a square of points (docs/psf.md).
+    Point spread function: distribution of the light of one object point on the film, on a square grid of points (docs/psf.md).
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
@@ -1582,181 +1883,193 @@ class PSF:
     def __deepcopy__(self, memo: object) -> Self: ...
     def energy_inside(self, radius_um: float, about_um: tuple[float, float] = (0.0, 0.0)) -> float:
         """
-        Share of the light within a circle about a point (x, y), as far as the array reaches.
+        Returns the fraction of the light within a circle about the point about_um, (x, y) relative to centre_mm. Light outside of the array is not counted.
         """
     def mtf(
         self, frequencies_per_mm: ArrayLike | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """
-        Modulation transfer: (frequencies per mm, tangential, sagittal), three arrays of shape (N,). Tangential
-        is the contrast of lines across y, sagittal of lines across x. None: 0 to half of one over pitch_um.
+        Returns the modulation transfer function as (frequencies_per_mm, tangential, sagittal), arrays of shape
+        (N,). Tangential: contrast of a line pattern that varies along y; sagittal: along x.
+        frequencies_per_mm: (N,); None: from 0 to half of 1 / pitch_um.
         """
     @property
     def centre_mm(self) -> tuple[float, float]:
         """
-        (x, y) on the film, from the axis: of the point at x_um = y_um = 0.
+        (x, y) on the film, from the axis, of the point with x_um = y_um = 0.
         """
     @property
     def energy(self) -> float:
         """
-        Share of the light on the array: the rest falls beside it.
+        Fraction of the light that falls on the array, 0 to 1.
         """
     @property
     def pitch_um(self) -> float:
         """
-        From point to point.
+        Distance between neighbouring points.
         """
     @property
     def rays(self) -> int:
         """
-        Of all wavelengths.
+        Number of rays, summed over all wavelengths.
         """
     @property
     def strehl(self) -> float:
         """
-        Largest value over that of the same rays all in phase; nan for the method "geometric".
+        Strehl ratio: largest value over that of the same rays all in phase; nan for the method "geometric".
         """
     @property
     def values(self) -> NDArray[np.float64]:
         """
-        (size, size): share of the light that passes the lens, per um^2; their sum times pitch_um^2 is 1 over the
-        whole film. Rows from the lowest y, columns from the lowest x.
+        (size, size): fraction of the light that passes the lens, per um^2; over the whole film the values times
+        pitch_um^2 add up to 1. Rows from the lowest y, columns from the lowest x.
         """
     @property
     def wavelength_nm(self) -> float:
         """
-        The mean of several, by their weights.
+        Weighted mean of the wavelengths.
         """
     @property
-    def wavelengths_nm(self) -> NDArray[np.float64]: ...
+    def wavelengths_nm(self) -> NDArray[np.float64]:
+        """
+        (N,): wavelengths.
+        """
     @property
     def weights(self) -> NDArray[np.float64]:
         """
-        (N,): shares of the light, whose sum is 1.
+        (N,): fraction of the light at each wavelength; the sum is 1.
         """
     @property
     def x_um(self) -> NDArray[np.float64]:
         """
-        (size,): of the columns, from the array's middle.
+        (size,): x of the columns, relative to centre_mm.
         """
     @property
     def y_um(self) -> NDArray[np.float64]:
         """
-        (size,): of the rows; a positive field lies in the y-z plane.
+        (size,): y of the rows, relative to centre_mm; field_deg lies in the y-z plane.
         """
 
 @final
 class RayBundle:
     """
-    The light of one object point at one wavelength that passes the lens, as rays at
-    Gauss's nodes between its edges. Lens frame; x and y from the axis.
+    Rays that represent the light of one object point, at one wavelength, that passes
+    the lens. They lie at the nodes of Gauss quadrature between the edges of the light. Lens frame; x and y from the axis.
+    See Lens.bundle.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
     @property
     def amplitude(self) -> NDArray[np.float64]:
         """
-        (N,): root of the light for each area of slopes, times a common factor.
+        (N,): square root of the light per area in slopes, times a common factor.
         """
     @property
     def chief_ray_mm(self) -> tuple[float, float]:
         """
-        (x, y) on the film, of the ray through the middle of the stop, even where the lens blocks it.
+        (x, y) on the film of the ray through the centre of the stop, even if the lens blocks it.
         """
     @property
     def directions(self) -> NDArray[np.float64]:
         """
-        (N, 3), unit: behind the lens.
+        (N, 3): unit directions behind the lens.
         """
     @property
     def edge_entry_mm(self) -> NDArray[np.float64]:
         """
-        (M, 2, 2): pieces of the edge of what passes, from (x, y) to (x, y), as entry_mm.
+        (M, 2, 2): segments of the edge of the light that passes, each from (x, y) to (x, y), in the entry plane.
         """
     @property
     def edge_slopes(self) -> NDArray[np.float64]:
         """
-        (M, 2, 2): the same, as slopes.
+        (M, 2, 2): the same segments in the coordinates of slopes.
         """
     @property
     def energy(self) -> NDArray[np.float64]:
         """
-        (N,): shares of the light; their sum is 1.
+        (N,): fraction of the light of each ray; the sum is 1.
         """
     @property
     def entry_mm(self) -> NDArray[np.float64]:
         """
-        (N, 2): where the rays cross the plane before the lens over which the light is even: through
-        the middle of the paraxial entrance pupil, across the light.
+        (N, 2): intersections of the rays with the entry plane in front of the lens, over which the
+        light is uniform: the plane through the centre of the paraxial entrance pupil, perpendicular to the light.
         """
     @property
     def film_distance_mm(self) -> float:
         """
-        Last vertex to the film, or to another plane.
+        Distance from the last vertex to the plane of points_mm.
         """
     @property
     def index(self) -> float:
         """
-        Behind the lens.
+        Refractive index behind the lens.
         """
     @property
     def mirrored(self) -> bool:
         """
-        Whether the second half of the rays are the mirror images of the first, as of all lenses without blades.
+        True if the second half of the rays are mirror images of the first half, as for every lens without diaphragm blades.
         """
     @property
     def path_mm(self) -> NDArray[np.float64]:
         """
-        (N,): of each ray as a plane wave at the chief ray's film point, less that of the chief ray:
-        amplitude exp(2 pi i index / wavelength (path + slope . q)) at q from there.
+        (N,): path of each ray, as a plane wave at the chief ray's film point, minus that of the chief
+        ray. At the offset q from that point the wave is amplitude * exp(2 pi i index / wavelength * (path + slope . q)).
         """
     @property
     def points_mm(self) -> NDArray[np.float64]:
         """
-        (N, 2): on the film, from the axis.
+        (N, 2): intersections with the film, (x, y) from the axis.
         """
     @property
     def sagittal_focus_mm(self) -> float:
         """
-        The same, of rays beside that plane.
+        Distance along the axis from the film to the sagittal focus, of rays close to the chief ray in the perpendicular plane; positive: behind the film. nan if there is none.
         """
     @property
     def slopes(self) -> NDArray[np.float64]:
         """
-        (N, 2): direction cosines x and y, less those of the sphere that runs from the exit pupil to
-        the chief ray's film point: the pupil's coordinates in all sums of waves.
+        (N, 2): x and y direction cosines, minus those of the spherical wave from the exit pupil to the
+        chief ray's film point. They are the pupil coordinates in all sums of plane waves.
         """
     @property
     def tangential_focus_mm(self) -> float:
         """
-        Along the axis from the film to where rays close to the chief ray cross that differ from it in the plane
-        of the axis; positive: behind the film. nan where the lens has none.
+        Distance along the axis from the film to the tangential focus, where rays close to the chief ray, in the
+        plane through it and the axis, intersect; positive: behind the film. nan if there is none.
         """
     @property
-    def wavelength_nm(self) -> float: ...
+    def wavelength_nm(self) -> float:
+        """
+        Wavelength.
+        """
 
 @final
 class FilmPupil:
     """
-    The pupil as a film point sees it, in direction cosines across the film's normal of light on its way to the
-    film, times the index in front of the film.
+    Exit pupil as seen from a film point, in optical direction cosines: x and y components of the unit direction
+    of light travelling to the film, times the refractive index in front of the film. See Lens.film_pupil.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
     @property
     def irradiance(self) -> float:
         """
-        Of the film point, for unit radiance of all that the lens sees: the pupil's area, in the middle
-        of a lens of revolution pi sin^2 of the largest angle. 0 where no light arrives.
+        Irradiance of the film point for a scene of uniform unit radiance, which is the pupil's area in
+        direction cosines: on the axis of a rotationally symmetric lens, pi times sin^2 of the largest angle. 0 if no light
+        arrives.
         """
     @property
     def outline(self) -> NDArray[np.float64]:
         """
-        (M, 2, 2): pieces of the edge of what passes, each from (x, y) to (x, y).
+        (M, 2, 2): segments of the pupil's edge, each from (x, y) to (x, y).
         """
 
 @final
 class _ToleranceEvaluator:
+    """
+    Internal: use realcam.tolerance. Evaluates copies of a lens with manufacturing errors.
+    """
     def __init__(
         self,
         lens: Lens,
@@ -1769,7 +2082,13 @@ class _ToleranceEvaluator:
         film_tilt: bool,
         sharp_at: float | None,
         shift: tuple[int, int, bool, float] | None,
-    ) -> None: ...
+    ) -> None:
+        """
+        fields_rad: (F, 2), directions whose length is the angle. colours: (C, 2) of (wavelength_nm, weight).
+        frequencies: of the MTF, periods per mm. rings: rings of rays in the stop. Compensators: refocus, film_tilt, and shift,
+        (first surface, last surface, along the axis, range in mm). sharp_at: frequency in periods per mm at which the
+        compensators maximise contrast; None: they minimise the mean square spot radius.
+        """
     def copy(
         self,
         errors: Sequence[tuple[str, int, int]],
@@ -1777,22 +2096,32 @@ class _ToleranceEvaluator:
         film_shift_mm: float,
         film_slope: tuple[float, float],
         element_shift_mm: _Triple,
-    ) -> Lens: ...
-    def judge(self, errors: Sequence[tuple[str, int, int]], sizes: ArrayLike) -> dict[str, NDArray[np.float64]]: ...
+    ) -> Lens:
+        """
+        Returns the Lens with errors of these sizes, (errors,), and with these settings of the compensators.
+        """
+    def judge(self, errors: Sequence[tuple[str, int, int]], sizes: ArrayLike) -> dict[str, NDArray[np.float64]]:
+        """
+        Evaluates N copies. errors: (kind, first, last) for each error; sizes: (N, errors). Returns arrays of
+        shape (N, ...): focal_length_mm, settings of the compensators, and by field F rms_spot_mm, distortion, light (unblocked
+        fraction of the stop), chief_ray_mm (N, F, 2), and mtf (N, F, 2, frequencies), along and across the field.
+        """
 
 @final
 class Film:
     """
-    The light-sensitive rectangle and its pixels.
+    The light-sensitive rectangle of a camera, and its pixels.
     """
     @staticmethod
     def for_lens(
         lens: Lens, size_mm: tuple[float, float] | None = None, resolution: tuple[int, int] | None = None
     ) -> Film:
         """
-        A film for a lens. size_mm: (width, height); resolution: (columns, rows). None is chosen: the
-        size that the lens was made for, 960 square pixels along the longer side; of a resolution alone
-        the largest part of the lens's film that has its shape. Raises InputError.
+        Returns a Film for a lens.
+        size_mm: (width, height); None: the size for which the lens is designed, or, if resolution is specified, the largest
+          part of it with the shape of the resolution.
+        resolution: (columns, rows); None: 960 square pixels along the longer side.
+        Raises InputError.
         """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
@@ -1804,9 +2133,10 @@ class Film:
         shift_mm: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         """
-        resolution: (columns, rows). shift_mm: of the film's middle from the lens's axis, right and up as the
-        picture shows it: a shift lens's, or the principal point of a sensor, whose pixel is principal_point.
-        The lens, and Camera.position, stay where they are. Raises InputError.
+        width_mm, height_mm: size. resolution: (columns, rows) of pixels.
+        shift_mm: (right, up), as in the developed picture: displacement of the film's centre from the lens's axis, as of a
+          shift lens, or of a sensor whose principal point is not its centre. Lens and Camera.position do not move.
+        Raises InputError.
         """
     def replace(
         self,
@@ -1817,21 +2147,33 @@ class Film:
         shift_mm: tuple[float, float] | None = None,
     ) -> Film:
         """
-        The film with some of what Film() takes changed. None stays.
+        Returns the film with some properties changed. Arguments as for Film(); None: unchanged. Raises InputError.
         """
     @property
-    def height_mm(self) -> float: ...
+    def height_mm(self) -> float:
+        """
+        Height.
+        """
     @property
     def principal_point(self) -> tuple[float, float]:
         """
-        (column, row) at which the lens's axis meets the film, from the picture's upper left corner.
+        (column, row) at which the lens's axis intersects the film, in pixels from the picture's upper left corner.
         """
     @property
-    def resolution(self) -> tuple[int, int]: ...
+    def resolution(self) -> tuple[int, int]:
+        """
+        (columns, rows) of pixels.
+        """
     @property
-    def shift_mm(self) -> tuple[float, float]: ...
+    def shift_mm(self) -> tuple[float, float]:
+        """
+        (right, up), displacement of the film's centre from the lens's axis.
+        """
     @property
-    def width_mm(self) -> float: ...
+    def width_mm(self) -> float:
+        """
+        Width.
+        """
 
 class FieldOfView(NamedTuple):
     horizontal: float
@@ -1841,10 +2183,9 @@ class FieldOfView(NamedTuple):
 @final
 class Camera:
     """
-    Lens, film, pose and exposure. position is the middle of the film (the sensor), in front of which the whole
-    lens is: entrance_pupil_position_m says from where the scene is seen. Film(shift_mm=...) moves the film
-    from there, and nothing else: film_centre_m is its middle then, and position and look_at stay on the
-    lens's axis.
+    Camera: lens, film, pose and exposure. Immutable. position is the centre of the unshifted film (the sensor);
+    the lens lies in front of it, and the centre of perspective is entrance_pupil_position_m. Film(shift_mm=...) moves only
+    the film, whose centre is film_centre_m; position and look_at stay on the lens's axis.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
@@ -1864,13 +2205,15 @@ class Camera:
         motion: Sequence[tuple[float, _Triple, _Triple] | tuple[float, _Triple, _Triple, _Triple]] = [],
     ) -> None:
         """
-        film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).
-        model: "full" (every surface), "thick" (paraxial matrix), "mapped" (an ideal lens with
-        the real one's distortion and vignetting), "thin" (ideal lens), "pinhole".
-        shutter_opens_s: time in the scene at which the exposure begins. readout_time_s: of a rolling shutter,
-        the time from the top row of pixels to the bottom one; each is exposed for exposure_time_s.
-        motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in rising order of time, in
-        place of position, look_at and up, which are then those at time 0. Between keys the camera moves evenly.
+        lens: the Lens. film: a Film; None: that of the lens.
+        position, look_at: (x, y, z) in metres, scene. up: the upward direction.
+        exposure_time_s: exposure time of each pixel. iso: sensitivity (ISO 12232).
+        model: camera model: "full" (ray trace through every surface), "thick" (paraxial matrix), "mapped" (an ideal lens with
+          the real one's distortion and vignetting), "thin" (ideal lens), or "pinhole".
+        shutter_opens_s: time in the scene at which the exposure begins. readout_time_s: delay of a rolling shutter from the top
+          row of pixels to the bottom row.
+        motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in increasing order of time, instead of
+          position, look_at and up, which then become those at time 0. Between keys the camera moves uniformly.
         Raises InputError.
         """
     def framing(
@@ -1884,12 +2227,14 @@ class Camera:
         scene_camera: str = "",
     ) -> Camera:
         """
-        The camera where it has the scene in its picture, in focus: position, look_at and focus_distance_m as
-        given, and what is None chosen. scene_camera: the name of one of scene.cameras, whose place, direction
-        and motion to take, or "none"; where nothing is said of the view it is the first of them. Without one the
-        view follows the rules of docs/scenes.md: an object from its front (+z, or -y where up is z), slightly above
-        and aside, where it fills nine tenths of the film, and a room from its open side or from a corner inside.
-        Of the camera itself lens, film, model and exposure stay. Raises InputError.
+        Returns the camera with a view of the scene, in focus. Lens, film, model and exposure stay.
+        position, look_at: (x, y, z) in m, scene; None: chosen automatically. up: the upward direction.
+        focus_distance_m: distance from the plane in focus to the film; None: focus on the subject.
+        scene_camera: name of the one of scene.cameras whose position, direction and motion are used; "none": do not use one;
+          "": the first of them, if neither position nor look_at is specified.
+        Without a scene camera the view follows the rules of docs/scenes.md: an object is seen from its front (+z, or -y if up
+        is z), slightly from above and the side, and fills nine tenths of the film; a room is seen from its open side, or from
+        a corner inside. Raises InputError.
         """
     @overload
     def generate_rays(
@@ -1901,12 +2246,14 @@ class Camera:
         wavelengths_nm: tuple[float, float] | None = None,
     ) -> CameraRays:
         """
-        The rays that render would trace, for any other renderer, 56 bytes each. Returns CameraRays.
-        wavelengths_nm: a pair (shortest, longest). Each ray has one of its own, drawn evenly between them, for
-        which every glass has its own index: weight times spectral radiance times (longest - shortest) is the
-        irradiance of that band. None: all have the lens's design wavelength.
-        device: "cpu": arrays of numpy. "cuda", "cuda:1": DeviceArrays, made in that GPU's memory and left
-        there. "auto": a GPU if there is one. Raises InputError, DeviceError.
+        Generates the rays that realcam.render would trace, for use in another renderer; 56 bytes each.
+        spp: rays per pixel. seed: of the random numbers.
+        device: "cpu": the results are numpy arrays; "cuda", "cuda:1": they are DeviceArrays in that GPU's memory; "auto": a GPU
+          if there is one.
+        wavelengths_nm: (shortest, longest), 300 to 2500: each ray has its own wavelength, drawn uniformly between them, with
+          the glasses' refractive indices there. The irradiance of the band is the mean of weight times spectral radiance, times
+          (longest - shortest). None: all rays have the lens's design wavelength.
+        Returns CameraRays. Raises InputError and DeviceError.
         """
     @overload
     def generate_rays(
@@ -1921,29 +2268,29 @@ class Camera:
         progress: Callable[[float], bool | None] | None = None,
     ) -> Camera:
         """
-        The camera with the exposure time that brings the average of its picture of the scene to middle grey at
-        its ISO, from a small picture with so many reflections (see render, as for device and progress).
-        Raises InputError where no light reaches the film; DeviceError.
+        Returns the camera with the exposure time at which the average of its picture of the scene becomes middle
+        grey at its ISO, measured on a small picture. device, max_bounces, progress: as for realcam.render.
+        Raises InputError if no light reaches the film; DeviceError.
         """
     def pose_at(
         self, time_s: float
     ) -> tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]:
         """
-        Where the motion has the camera at a time: position, look_at and up, in the scene, metres.
+        Returns (position, look_at, up) at a time in seconds of the scene, interpolated between the motion's keys.
         """
     @overload
     def project(
         self, points_m: ArrayLike, *, through: str = "light", return_status: Literal[True]
     ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
         """
-        Where points of the scene, (N, 3) in metres, are in the picture: (N, 2) float64, column and row in
-        pixels, counted right and down from the picture's upper left corner, so that the middle of the first
-        pixel is (0.5, 0.5). By real rays at the lens's design wavelength, through lens, focus and stop as they
-        are, or by the camera's model. Whether something in the scene hides a point is not asked.
-        through: "light": the middle of the light of a point, as pictures show it, by the mean ray of each
-        film point; "chief": where the ray through the middle of the stop lands.
-        NaN where the lens images no such point. return_status: return (pixels, status), with a
-        ProjectionStatus for each point. Raises InputError.
+        Projects points of the scene to pixels, by real rays at the lens's design wavelength or by the camera
+        model.
+        points_m: (N, 3), in metres, scene. Occlusion by the scene is not considered.
+        through: projection ray of a point. "light": the centroid of its light, as pictures show it, by the centroid ray of each
+          film point; "chief": the chief ray, through the centre of the stop.
+        return_status: True: return (pixels, status), with a ProjectionStatus for each point.
+        Returns (N, 2) float64: column and row in pixels, to the right and down from the picture's upper left corner; the centre
+        of the first pixel is (0.5, 0.5). NaN if the lens does not image the point. Raises InputError.
         """
     @overload
     def project(
@@ -1954,13 +2301,15 @@ class Camera:
         self, pixels: ArrayLike, *, through: str = "light", return_light: Literal[True]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """
-        The lines along which points of the picture, (N, 2) column and row as from project, look into the
-        scene: (origins_m, directions), (N, 3) float64, the first where the line leaves the lens, the second
-        unit. project takes each of their points back to the pixel.
-        through: "light": the mean of the rays that a film point gets; "chief": that through the middle of
-        the stop, even where a rim blocks it. NaN for a pixel without light, and at the edge of the image where
-        the lines turn back inwards. return_light: return (origins_m, directions, light), with the irradiance
-        of each pixel in an even field, over that in the middle of the film. Raises InputError.
+        Returns the projection rays of pixels: (origins_m, directions), (N, 3) float64, scene. Origins lie on the
+        front of the lens, directions are unit vectors into the scene. project() maps every point of a ray to its pixel.
+        pixels: (N, 2), column and row, see Camera.project.
+        through: "light": the centroid of the rays that reach the film point; "chief": the ray through the centre of the stop,
+          even if a rim blocks it.
+        return_light: True: return (origins_m, directions, light), with the relative illumination (N,): irradiance of the pixel
+          in a uniform field over that at the film centre.
+        NaN for a pixel without light, and at the edge of the image where the field angle no longer increases. Raises
+        InputError.
         """
     @overload
     def ray(
@@ -1977,8 +2326,9 @@ class Camera:
         max_rays: int = 4194304,
     ) -> RayChunks:
         """
-        The same rays in pieces of at most max_rays, for pictures whose rays memory does not hold: an iterator
-        over CameraRays. A piece may end between two rays of a pixel. Raises InputError, DeviceError.
+        Returns an iterator over CameraRays with the rays of generate_rays in chunks of at most max_rays, for
+        pictures whose rays do not fit into memory. A chunk may end between two rays of a pixel. Raises InputError and
+        DeviceError.
         """
     @overload
     def ray_chunks(
@@ -2006,140 +2356,177 @@ class Camera:
         motion: Sequence[tuple[float, _Triple, _Triple] | tuple[float, _Triple, _Triple, _Triple]] | None = None,
     ) -> Camera:
         """
-        The camera with some of what Camera() takes changed. None stays; so does the film with another lens
-        (see Film.for_lens). A new position, look_at or up ends its motion. Raises InputError.
+        Returns the camera with some properties changed. Arguments as for Camera(); None: unchanged. The film
+        stays if the lens changes (see Film.for_lens). A new position, look_at or up removes the motion. Raises InputError.
         """
     @property
     def camera_matrix(self) -> NDArray[np.float64]:
         """
-        (3, 3): K of the pinhole that the lens is to first order, in pixels as project counts them. OpenCV, whose
-        first pixel has its middle at (0, 0), wants 0.5 less in the last column. Raises InputError where the
-        entrance pupil lies at infinity.
+        (3, 3): intrinsic matrix K of the pinhole camera that the lens is to first order, in the pixel
+        coordinates of project(). For OpenCV, whose first pixel has its centre at (0, 0), subtract 0.5 from the principal point
+        in the last column. Raises InputError if the entrance pupil lies at infinity.
         """
     @property
     def entrance_pupil_position_m(self) -> tuple[float, float, float] | None:
         """
-        (x, y, z), scene: the middle of the paraxial entrance pupil, from where the camera
-        sees the scene; turning about it shows no parallax. None where it lies at infinity.
+        (x, y, z), scene: centre of the paraxial entrance pupil, which is the centre of
+        perspective: a rotation about it causes no parallax. None if it lies at infinity.
         """
     @property
-    def exposure_time_s(self) -> float: ...
+    def exposure_time_s(self) -> float:
+        """
+        Exposure time of each pixel.
+        """
     @property
     def field_of_view_deg(self) -> FieldOfView:
         """
-        FieldOfView(horizontal, vertical, diagonal): angles in front of the lens, in degrees, between what lands
-        on opposite edges and corners of the film, by real rays at the lens's focus. Where the film is larger
-        than the lens's image, between the edges of the image. Raises InputError where the camera's model has no
-        place for its lens.
+        FieldOfView(horizontal, vertical, diagonal): angles in degrees between the directions, in front of the
+        lens, that are imaged on opposite edges and corners of the film, by real rays at the lens's focus. If the film is
+        larger than the image circle, between the edges of the image. Raises InputError if the camera model cannot represent
+        the lens.
         """
     @property
-    def film(self) -> Film: ...
+    def film(self) -> Film:
+        """
+        The Film.
+        """
     @property
     def film_centre_m(self) -> tuple[float, float, float]:
         """
-        (x, y, z), scene: the middle of the film, which is position but for Film(shift_mm=...).
+        (x, y, z), scene: centre of the film; differs from position by Film(shift_mm=...).
         """
     @property
-    def iso(self) -> float: ...
+    def iso(self) -> float:
+        """
+        Sensitivity (ISO 12232).
+        """
     @property
-    def lens(self) -> Lens: ...
+    def lens(self) -> Lens:
+        """
+        The Lens.
+        """
     @property
-    def look_at(self) -> tuple[float, float, float]: ...
+    def look_at(self) -> tuple[float, float, float]:
+        """
+        (x, y, z) of a point on the lens's axis in front of the camera, in metres, scene.
+        """
     @property
-    def model(self) -> str: ...
+    def model(self) -> str:
+        """
+        Name of the camera model, see Camera().
+        """
     @property
     def motion(
         self,
     ) -> tuple[tuple[float, tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]], ...]:
         """
-        Keys (time_s, position, look_at, up); none: it stands still.
+        Keys (time_s, position, look_at, up); empty if the camera does not move.
         """
     @property
-    def position(self) -> tuple[float, float, float]: ...
+    def position(self) -> tuple[float, float, float]:
+        """
+        (x, y, z) of the centre of the unshifted film, in metres, scene.
+        """
     @property
-    def readout_time_s(self) -> float: ...
+    def readout_time_s(self) -> float:
+        """
+        Delay of a rolling shutter from the top row of pixels to the bottom row.
+        """
     @property
-    def shutter_opens_s(self) -> float: ...
+    def shutter_opens_s(self) -> float:
+        """
+        Time in the scene at which the exposure begins.
+        """
     @property
-    def up(self) -> tuple[float, float, float]: ...
+    def up(self) -> tuple[float, float, float]:
+        """
+        (x, y, z), the upward direction.
+        """
     @property
     def world_to_camera(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """
-        (R, t), (3, 3) and (3,) in metres: R @ point + t is the point from the middle of the entrance pupil, with
-        x right, y down and z forward, as OpenCV and COLMAP have it. Of a camera that moves: in the middle of
-        the exposure. Raises InputError where the entrance pupil lies at infinity.
+        (R, t), arrays (3, 3) and (3,), in metres: R @ point + t is a scene point relative to the centre of the
+        entrance pupil, with x to the right, y down and z forward, as in OpenCV and COLMAP. For a moving camera, at the middle
+        of the exposure. Raises InputError if the entrance pupil lies at infinity.
         """
 
 def pupil_setup(lens: Lens, film_radius_mm: float, on_one_core: bool = False) -> float:
     """
-    Finds the lens's pupil for every film radius up to this one (what render does after any change of focus or
-    stop). Returns the radius beyond which no light arrives, mm.
+    Computes the table of a lens's exit pupil for film radii up to film_radius_mm, as rendering does after a
+    change of focus or stop; for benchmarks. on_one_core: True: uses one CPU core only. Returns the film radius in mm
+    beyond which no light arrives.
     """
 
 @final
 class CameraRays(Generic[_Doubles, _Floats, _Integers]):
     """
-    The rays of a camera, spp for each pixel, row by row from the top left. Arrays of numpy, or
-    DeviceArrays.
+    Rays of a camera in front of its lens, spp for each pixel, row by row from the upper left. numpy arrays or
+    DeviceArrays. See Camera.generate_rays.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
     @property
     def directions(self) -> _Floats:
         """
-        (N, 3) float32, unit, scene.
+        (N, 3) float32: unit directions, scene.
         """
     @property
     def origins_m(self) -> _Doubles:
         """
-        (N, 3) float64, scene.
+        (N, 3) float64: origins, scene.
         """
     @property
     def pixels(self) -> _Integers:
         """
-        (N,) int32: row * columns + column.
+        (N,) int32: index of the pixel, row * columns + column.
         """
     @property
     def times_s(self) -> _Doubles:
         """
-        (N,) float64: when the shutter lets them through, stratified over each pixel's exposure.
+        (N,) float64: times in the scene at which the rays pass the shutter, stratified over each pixel's exposure.
         """
     @property
     def wavelengths_nm(self) -> _Floats:
         """
-        (N,) float32: for which the lens was traced.
+        (N,) float32: wavelengths at which the lens was traced.
         """
     @property
     def weights(self) -> _Floats:
         """
-        (N,) float32: irradiance on the film for unit radiance; the mean over a pixel's rays of weight times
-        radiance is its irradiance. 0: the lens blocks the ray.
+        (N,) float32: irradiance on the film for unit radiance. The irradiance of a pixel is the mean over its
+        rays of weight times radiance. 0 if the lens blocks the ray.
         """
 
 @final
 class RayChunks(Generic[_Doubles, _Floats, _Integers]):
     """
-    An iterator over a camera's rays: see Camera.ray_chunks.
+    Iterator over chunks of a camera's rays, see Camera.ray_chunks.
     """
     def __iter__(self) -> Self: ...
     def __next__(self) -> CameraRays[_Doubles, _Floats, _Integers]:
         """
-        Returns CameraRays.
+        Returns the CameraRays of the next chunk.
         """
 
-def _film_of_white(illuminant: str) -> NDArray[np.float64]: ...
+def _film_of_white(illuminant: str) -> NDArray[np.float64]:
+    """
+    Internal. Returns one row per wavelength cell of an illuminant, (N, 5): its shortest and longest wavelength
+    in nm, and the film's response (red, green, blue) to a white surface if all light has wavelengths of this cell.
+    """
+
 def _pupil_table(
     lens: Lens, film_radius_mm: float, wavelengths_nm: Sequence[float]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], float]:
     """
-    Where points of the film get light from, as samples are drawn from it (PupilView): nodes (rows + 1, 3),
-    sectors (rows, sectors, 5), and the radius beyond which there is none, mm. wavelengths_nm: it holds what passes at
-    any of these. Raises InputError for lenses that are not of revolution, and glasses not known there.
+    Internal. Tabulates the exit pupil as seen from film radii up to film_radius_mm, from which rays are sampled
+    (PupilView in pupil_view.hpp). Returns nodes (rows + 1, 3), sectors (rows, sectors, 5), and the film radius in mm beyond
+    which no light arrives. wavelengths_nm: the table contains all light that passes at any of these. Raises InputError for
+    a lens that is not rotationally symmetric, and if a glass is unknown at a wavelength.
     """
 
 def _iris_apothem_mm(lens: Lens) -> float | None:
     """
-    Distance from the axis to the middle of a blade's edge; None where no blade is in the light.
+    Internal. Returns the distance from the axis to the middle of a blade's edge; None if no blade is in the light.
     """
 
 class ProjectionStatus(IntEnum):
@@ -2152,7 +2539,9 @@ class ProjectionStatus(IntEnum):
 @final
 class Material:
     """
-    How a surface reflects and emits light. Colours are linear Rec. 709.
+    Reflection, transmission and emission of a surface. Colours are linear
+    Rec. 709. Material() creates a Phong material as in Wavefront's MTL files, Material.metallic_roughness one as in
+    glTF; both describe their properties.
     """
     @staticmethod
     def metallic_roughness(
@@ -2188,15 +2577,19 @@ class Material:
         normal_map: ArrayLike | None = None,
     ) -> Material:
         """
-        glTF's material: GGX microfacets of alpha = roughness^2 on a metal, on a dielectric over a diffuse
-        base, or, for the share transmission of it, on a border that lets light through; all between 0 and 1. base_color,
-        times texture: the metal's reflectance, the diffuse one, or the tint of what passes. ior: of the dielectric;
-        specular_color, specular_weight: what its reflection is multiplied by. metallic_roughness_texture: roughness in
-        green and metallic in blue, linear, times the numbers. clearcoat: share of a second, colourless layer of index 1.5
-        above all, which has the mesh's normals, or those of clearcoat_normal_map. specular_texture: colours that
-        specular_color is multiplied by; linear, and of one channel: specular_weight_texture (the fourth, or the mean of
-        fewer), clearcoat_texture and transmission_texture (red), clearcoat_roughness_texture (green). absorption, thin,
-        emission, opacity and the other textures as in Material(). Raises InputError.
+        Creates a metallic-roughness material as in glTF: GGX microfacets with alpha = roughness^2.
+        metallic: 0 for a dielectric on a diffuse base, to 1 for a metal. roughness: 0 to 1. metallic_roughness_texture: factors
+          on them, linear: roughness in the green channel, metallic in the blue one.
+        base_color, times texture: reflectance of the metal or of the diffuse base, or tint of the transmitted light.
+        transmission: fraction of the dielectric, 0 to 1, that transmits light instead of having a diffuse base.
+        ior: index of refraction of the dielectric. specular_color, times specular_texture, and specular_weight, times
+          specular_weight_texture (fourth channel, or mean of fewer channels): factors on its reflection.
+        clearcoat: fraction of the surface, 0 to 1, with a colourless coat of index 1.5 on top, which has the mesh's normals or
+          those of clearcoat_normal_map; clearcoat_normal_scale: factor on x and y of that map. clearcoat_texture (red channel)
+          and clearcoat_roughness_texture (green channel): factors on clearcoat and clearcoat_roughness.
+        specular_weight_texture, clearcoat_texture, clearcoat_roughness_texture and transmission_texture (red channel) are
+        linear. Formats of textures, and absorption, thin, emission, opacity and the other arguments: see Material().
+        Raises InputError.
         """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
@@ -2229,22 +2622,26 @@ class Material:
         normal_map: ArrayLike | None = None,
     ) -> None:
         """
-        Wavefront's material (MTL). diffuse, specular: reflectance of Lambert's and of Phong's lobe;
-        shininess: Phong exponent; emission: radiance in cd/m^2, on the side from which the corners run counter-clockwise;
-        mirror: reflectance as a mirror, at normal incidence; fresnel: whether it grows towards grazing incidence (Schlick),
-        and a smooth border reflects as its index says; transmission: share of the surface that is a smooth border between
-        outside and a medium of index ior, which multiplies what passes by filter and absorbs on the way, per metre; thin: a
-        film, behind which light goes on as it came. texture, specular_texture, emission_texture: what diffuse, specular and
-        emission are multiplied by, (H, W) grey, (H, W, 3) or (H, W, 4), sRGB codes, row 0 at v = 1: whole numbers from 0 to
-        255, or fractions from 0 to 1, which are kept as floats. Colours are taken as they are, whatever the fourth channel
-        (alpha) says. normal_map: directions in tangent space, in the same way but linear; normal_scale: of their x and y.
-        shininess_texture (its green channel) and transmission_texture (red): what those are multiplied by, linear. name: to
-        find it by in Scene.materials. opacity, times opacity_texture (its fourth channel, or the mean of fewer, linear):
-        share of the surface that is there; through the rest light goes as if there were nothing, shadows included. With an
-        opacity_cutoff above 0 there is all of it where that product reaches the cutoff, and nothing elsewhere.
-        double_sided: emission leaves on both sides. shadow_catcher: invisible, but what is seen through it is as much
-        darker as the lights are hidden from it (MTL's illumination model 10); light and shadows go through; it counts as a
-        bounce. Raises InputError.
+        Creates a Phong material as in Wavefront's MTL files. Colours are linear (r, g, b).
+        diffuse, specular: reflectance of the Lambert lobe and of the Phong lobe. shininess: Phong exponent.
+        mirror: specular reflectance at normal incidence.
+        fresnel: True: mirror increases towards grazing incidence (Schlick), and a dielectric interface reflects by its index.
+        transmission: fraction of the surface, 0 to 1, that is a smooth dielectric interface to a medium inside of index ior.
+          filter: factor on the light that passes the interface. absorption: coefficient inside, per metre. thin: True for a
+          thin film, behind which light continues in its direction.
+        emission: radiance in cd/m^2, on the side from which a triangle's vertices appear counterclockwise. double_sided: True:
+          on both sides.
+        texture, specular_texture, emission_texture: factors on diffuse, specular and emission, as arrays (H, W) grey,
+          (H, W, 3) or (H, W, 4), row 0 at v = 1, in sRGB: integers 0 to 255, or floats 0 to 1, which are stored as floats. The
+          fourth channel (alpha) does not change the colours.
+        normal_map: normals in tangent space, linear, in the same formats. normal_scale: factor on their x and y.
+        shininess_texture (green channel), transmission_texture (red channel): factors on shininess and transmission, linear.
+        opacity: fraction of light that the surface intercepts, 0 to 1; the rest, also of shadow rays, passes straight on.
+          opacity_texture: factor on it, linear: the fourth channel, or the mean of fewer channels. opacity_cutoff: above 0, the
+          surface is opaque where that product reaches the cutoff, and absent elsewhere.
+        shadow_catcher: True: the surface is invisible, but darkens what is behind it by the fraction of the lights that is
+          occluded there (MTL's illumination model 10). Light passes it; it counts as a bounce.
+        name: name in Scene.materials. Raises InputError.
         """
     def replace(
         self,
@@ -2262,104 +2659,193 @@ class Material:
         opacity: float | None = None,
     ) -> Material:
         """
-        The material with some numbers changed. What is not given stays; texture=None takes the texture away;
-        diffuse is the base colour of a metallic_roughness material, specular its specular_color.
+        Returns the material with some properties changed; those that are omitted stay. texture=None removes the
+        texture. diffuse is the base colour of a metallic_roughness material, specular its specular_color. Raises InputError.
         """
     @property
     def absorption(self) -> tuple[float, float, float]:
         """
-        Per metre.
+        Absorption coefficient inside, per metre.
         """
     @property
-    def clearcoat(self) -> float: ...
+    def clearcoat(self) -> float:
+        """
+        Fraction of the surface with a clear coat.
+        """
     @property
-    def clearcoat_normal_map(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    def clearcoat_normal_map(self) -> NDArray[np.uint8] | NDArray[np.float32] | None:
+        """
+        Normal map of the clear coat, linear, (H, W, 4), read-only; None: there is none.
+        """
     @property
-    def clearcoat_normal_scale(self) -> float: ...
+    def clearcoat_normal_scale(self) -> float:
+        """
+        Factor on x and y of clearcoat_normal_map.
+        """
     @property
-    def clearcoat_roughness(self) -> float: ...
+    def clearcoat_roughness(self) -> float:
+        """
+        Roughness of the clear coat, 0 to 1.
+        """
     @property
-    def clearcoat_roughness_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    def clearcoat_roughness_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None:
+        """
+        Texture, linear, (H, W, 4), read-only; None: there is none.
+        """
     @property
-    def clearcoat_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    def clearcoat_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None:
+        """
+        Texture, linear, (H, W, 4), read-only; None: there is none.
+        """
     @property
     def diffuse(self) -> tuple[float, float, float]:
         """
-        Reflectance; of metallic_roughness the base colour.
+        Diffuse reflectance; base colour of a metallic_roughness material.
         """
     @property
-    def double_sided(self) -> bool: ...
+    def double_sided(self) -> bool:
+        """
+        True if both sides emit light.
+        """
     @property
-    def emission(self) -> tuple[float, float, float]: ...
+    def emission(self) -> tuple[float, float, float]:
+        """
+        Emitted radiance in cd/m^2.
+        """
     @property
-    def emission_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    def emission_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None:
+        """
+        Texture of emission, in the format of texture; None: there is none.
+        """
     @property
-    def filter(self) -> tuple[float, float, float]: ...
+    def filter(self) -> tuple[float, float, float]:
+        """
+        Factor on transmitted light.
+        """
     @property
-    def fresnel(self) -> bool: ...
+    def fresnel(self) -> bool:
+        """
+        True if specular reflection depends on the angle of incidence.
+        """
     @property
-    def ior(self) -> float: ...
+    def ior(self) -> float:
+        """
+        Index of refraction inside.
+        """
     @property
-    def metallic(self) -> float: ...
+    def metallic(self) -> float:
+        """
+        0 for a dielectric to 1 for a metal.
+        """
     @property
     def metallic_roughness_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None:
         """
-        Of Wavefront's material: the shininess_texture.
+        Texture of roughness (green) and metallic (blue), linear, (H, W, 4), read-only; shininess_texture of a
+        Phong material. None: there is none.
         """
     @property
-    def mirror(self) -> tuple[float, float, float]: ...
+    def mirror(self) -> tuple[float, float, float]:
+        """
+        Specular reflectance at normal incidence.
+        """
     @property
     def model(self) -> str:
         """
         "phong" or "metallic_roughness".
         """
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """
+        Name in Scene.materials; may be empty.
+        """
     @property
-    def normal_map(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    def normal_map(self) -> NDArray[np.uint8] | NDArray[np.float32] | None:
+        """
+        Normal map, linear, (H, W, 4), read-only; None: there is none.
+        """
     @property
-    def normal_scale(self) -> float: ...
+    def normal_scale(self) -> float:
+        """
+        Factor on x and y of the normal map.
+        """
     @property
-    def opacity(self) -> float: ...
+    def opacity(self) -> float:
+        """
+        Opacity, 0 to 1.
+        """
     @property
-    def opacity_cutoff(self) -> float: ...
+    def opacity_cutoff(self) -> float:
+        """
+        Opacity from which the surface is opaque; 0: partial opacity.
+        """
     @property
-    def opacity_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    def opacity_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None:
+        """
+        Texture, linear, (H, W, 4), read-only; None: there is none.
+        """
     @property
-    def roughness(self) -> float: ...
+    def roughness(self) -> float:
+        """
+        Roughness, 0 to 1; the GGX parameter alpha is its square.
+        """
     @property
-    def shadow_catcher(self) -> bool: ...
+    def shadow_catcher(self) -> bool:
+        """
+        True for a surface that is visible only by shadows on it.
+        """
     @property
-    def shininess(self) -> float: ...
+    def shininess(self) -> float:
+        """
+        Phong exponent.
+        """
     @property
     def specular(self) -> tuple[float, float, float]:
         """
-        Reflectance of Phong's lobe; of metallic_roughness the specular_color.
+        Reflectance of the Phong lobe; specular_color of a metallic_roughness material.
         """
     @property
-    def specular_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    def specular_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None:
+        """
+        Texture of specular, in the format of texture; None: there is none.
+        """
     @property
-    def specular_weight(self) -> float: ...
+    def specular_weight(self) -> float:
+        """
+        Factor on the dielectric's reflection.
+        """
     @property
-    def specular_weight_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    def specular_weight_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None:
+        """
+        Texture, linear, (H, W, 4), read-only; None: there is none.
+        """
     @property
     def texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None:
         """
-        (H, W, 4), read-only: uint8 codes, or float32 of linear light; None: none.
+        Texture of the diffuse or base colour, (H, W, 4), read-only: uint8 sRGB codes, or float32 of linear
+        light; None: there is none.
         """
     @property
-    def thin(self) -> bool: ...
+    def thin(self) -> bool:
+        """
+        True for a thin film, behind which light continues in its direction.
+        """
     @property
-    def transmission(self) -> float: ...
+    def transmission(self) -> float:
+        """
+        Fraction of the surface that is a smooth dielectric interface.
+        """
     @property
-    def transmission_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    def transmission_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None:
+        """
+        Texture, linear, (H, W, 4), read-only; None: there is none.
+        """
 
 @final
 class Scene:
     """
-    Triangles, materials and lights, and instances of other scenes, any number of each;
-    metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are
-    those of static geometry; objects bring their own along.
+    Scene of triangles, materials, lights and instances of other scenes. Metres, right-handed, y up. Immutable:
+    every change returns a new Scene. Its materials and warnings are those of the static geometry; instanced objects have
+    their own.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
@@ -2375,40 +2861,49 @@ class Scene:
         colors: ArrayLike | None = None,
     ) -> Scene:
         """
-        vertices_m: (V, 3) float; triangles: (T, 3) int; normals: (V, 3) unit, zero for flat; uvs: (V, 2);
-        triangle_materials: (T,) indices into materials; colors: (V, 3) or (V, 4), linear Rec. 709, by which the
-        materials' diffuse or base colours, and a fourth number by which their opacity is multiplied.
-        Raises InputError or SceneFileError.
+        Creates a scene from a triangle mesh.
+        vertices_m: (V, 3) positions, in metres. triangles: (T, 3) indices of vertices, from 0; counterclockwise as seen from
+          the front.
+        normals: (V, 3) unit shading normals; zero vectors for flat shading. uvs: (V, 2) texture coordinates.
+        triangle_materials: (T,) indices into materials, from 0; None: all triangles have the first material. materials: list of
+          Materials; empty: one default material.
+        colors: (V, 3) or (V, 4) vertex colours, linear Rec. 709: factors on the materials' diffuse or base colours, the fourth
+          on their opacity.
+        Triangles of zero area are dropped, with a warning in Scene.warnings. Raises InputError and SceneFileError.
         """
     @staticmethod
     def load(path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = list()) -> Scene:
         """
         load(path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = []) -> Scene
 
-        Reads .obj (with its .mtl), .gltf, .glb or .ply. scale: metres per unit of the file; objects: names
-        of nodes (of an OBJ: what follows "o" or "g") that become instances, each with all below it, to be moved
-        by their names; of several nodes "car" the second is "car.2". Only regular files are read.
-        Raises SceneFileError, and KeyboardInterrupt on Ctrl-C. What could be put up with is in warnings.
+        Reads a scene file: .obj (with its .mtl), .gltf, .glb or .ply.
+        scale: metres per unit of the file.
+        objects: names of nodes (in an OBJ file: of "o" or "g" statements) that become instances, with all their descendants,
+          so that moved() can move them. The second of several nodes "car" is called "car.2".
+        Minor faults of the file are listed in warnings. Only regular files are read. Raises SceneFileError, and
+        KeyboardInterrupt on Ctrl-C.
         """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     def at_time(self, time_s: float) -> Scene:
         """
-        The scene as it stands at a time: with the transforms of then, and without motion.
+        Returns the scene at a time, in seconds: with the transforms of that time, and without motion.
         """
     def moved(self, instance: int | str, scene_from_object: ArrayLike, times_s: Sequence[float] | None = None) -> Scene:
         """
-        With another transform of one of the instances, by its name or number, and of its parts.
-        times_s: of K keys, in rising order, seconds of the scene; scene_from_object then has shape (K, 4, 4) or
-        (K, 3, 4). Between two keys it moves evenly and turns by the shorter way (Shoemake and Duff 1992), before
-        the first and after the last it stands; what the shutter sees of it is blurred (Camera.shutter_opens_s).
-        Made for every frame: the next picture takes over all that was built for the last.
-        Raises InputError where there is no such instance, or several, and for what is no transform or motion.
+        Returns the scene with the transform of an instance, and of its parts, replaced.
+        instance: name or index of the instance.
+        scene_from_object: matrix of shape (4, 4) or (3, 4), in metres; or (K, 4, 4) or (K, 3, 4) with times_s.
+        times_s: times of K keys in seconds of the scene, increasing. Between keys the translation is linear and the rotation
+          takes the shorter arc (polar decomposition: Shoemake and Duff 1992); before the first and after the last key the
+          instance stands still. Motion during the exposure is blurred (Camera.shutter_opens_s).
+        Cheap enough to call for every frame: acceleration structures are reused. Raises InputError if there is no such
+        instance, if several have the name, and for an invalid transform or motion.
         """
     def with_daylight(self, camera: Camera) -> Scene:
         """
-        The scene under a sun of 80 klux, from the upper left behind the camera, and a sky of 5000 cd/m^2 in
-        place of its environment: f/16, 1/125 s and ISO 100 expose it.
+        Returns the scene with additional daylight: a sun of 80 klux from the upper left behind the camera, and a
+        uniform sky of 5000 cd/m^2 instead of the environment. f/16, 1/125 s and ISO 100 expose it correctly.
         """
     def with_environment(
         self,
@@ -2419,29 +2914,33 @@ class Scene:
         layer: str = "",
     ) -> Scene:
         """
-        The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude
-        image (row 0 up, its middle column towards -z), or the path of one (see realcam.read_environment; layer: of an
-        OpenEXR file). Its light is
-        multiplied by scale, and an image turned about the vertical by rotation_deg, counterclockwise as seen from above: at
-        90 its middle column lies towards -x. Raises InputError and ImageFileError.
+        Returns the scene with another environment light.
+        radiance: a number or (r, g, b) in cd/m^2, a latitude-longitude image (H, W, 3) (row 0 at the top, its central column
+          towards -z), or the path of one (see realcam.read_environment).
+        scale: factor on the radiance.
+        rotation_deg: rotation of an image about the vertical, counterclockwise as seen from above; at 90 its central column
+          lies towards -x.
+        layer: layer of an OpenEXR file; "": the main image. Raises InputError and ImageFileError.
         """
     def with_instance(self, object: Scene, scene_from_object: ArrayLike | None = None, *, name: str = "") -> Scene:
         """
-        With another scene in it as an object: its triangles and point lights, but not its suns and environment.
-        scene_from_object: matrix of shape (4, 4) or (3, 4) for columns (x, y, z, 1), metres; none: as it is.
-        (K, 4, 4) or (K, 3, 4): K of them, with names "name 0", "name 1", ... The object's triangles are
-        shared by all of them; its own instances become its parts, which move with it, by the name
-        "name/part". A name that the scene has already gets a number: "car", "car.2", "car.3".
-        Raises InputError for a matrix that is flat.
+        Returns the scene with another scene inserted as an instanced object.
+        object: its triangles and point lights are inserted, but not its suns and environment. All instances share its
+          triangles. Its own instances become parts of the new instance, named "name/part", and move with it.
+        scene_from_object: matrix of shape (4, 4) or (3, 4) for column vectors (x, y, z, 1), in metres; None: the identity. An
+          array (K, 4, 4) or (K, 3, 4) inserts K instances, named "name 0", "name 1", ...
+        name: name of the instance. If the scene already has the name, a number is appended: "car.2", "car.3".
+        Raises InputError, also for a singular matrix.
         """
     def with_material(self, which: int | str, material: Material) -> Scene:
         """
-        With another material in place of one, by its name in materials or its number from 0; texture included.
-        The place keeps its name. Raises InputError.
+        Returns the scene with a material replaced, including its textures. which: its name in materials, or its
+        index from 0. The new material takes over the name. Raises InputError.
         """
     def with_point_light(self, position_m: _Triple, intensity: _Triple) -> Scene:
         """
-        With a point light; intensity (r, g, b) in cd.
+        Returns the scene with an additional point light. position_m: (x, y, z); intensity: (r, g, b) in cd.
+        Raises InputError.
         """
     def with_spot_light(
         self,
@@ -2453,89 +2952,104 @@ class Scene:
         outer_cone_deg: float = 45.0,
     ) -> Scene:
         """
-        With a spot: a point light of that intensity (r, g, b), in cd, along direction, which fades from the
-        inner cone to nothing at the outer one (KHR_lights_punctual); the cones' angles are from the axis. Raises
-        InputError.
+        Returns the scene with an additional spot light, as in glTF's KHR_lights_punctual.
+        position_m: (x, y, z). direction: (x, y, z), axis of the cone. intensity: (r, g, b) in cd, on the axis.
+        inner_cone_deg, outer_cone_deg: angles from the axis; the intensity decreases from the inner cone to 0 at the outer one.
+        Raises InputError.
         """
     def with_sun(self, direction: _Triple, illuminance: _Triple) -> Scene:
         """
-        With parallel light that travels along direction; illuminance (r, g, b) in lux.
+        Returns the scene with an additional sun: parallel light that travels along direction, (x, y, z).
+        illuminance: (r, g, b) in lux, on a surface perpendicular to the light. Raises InputError.
         """
     def with_texture(self, material: int | str, pixels: ArrayLike) -> Scene:
         """
-        With a texture on a material, by its name or number; pixels as in Material(texture=...).
-        Raises InputError, also where the vertices have no texture coordinates.
+        Returns the scene with another texture on a material. material: its name in materials, or its index from
+        0.
+        pixels: as for Material(texture=...). Raises InputError, also if the vertices have no texture coordinates.
         """
     @property
     def bounds_m(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """
-        Lowest and highest corner of the bounding box.
+        Lowest and highest corner (x, y, z) of the bounding box, in metres.
         """
     @property
     def cameras(self) -> tuple[tuple[str, NDArray[np.float64], float], ...]:
         """
-        Cameras of a glTF, for each (name, (4, 4) scene_from_camera at time 0, vertical field of view in
-        degrees): they look along -z, y upwards. Of an orthographic one the field is 0. See Camera.framing.
+        (name, (4, 4) scene_from_camera at time 0, vertical field of view in degrees) of each camera in a glTF
+        file. They look along -z, with y upwards. The field of view of an orthographic camera is 0. See Camera.framing.
         """
     @property
-    def has_light(self) -> bool: ...
+    def has_light(self) -> bool:
+        """
+        True if the scene has an emitter: a light, an emissive material or an environment.
+        """
     @property
     def instances(self) -> tuple[tuple[str, NDArray[np.float64]], ...]:
         """
-        For each its name and (4, 4) scene_from_object; of one that moves, at time 0.
+        (name, (4, 4) scene_from_object) of each instance; the transform at time 0 if the instance moves.
         """
     @property
-    def material_count(self) -> int: ...
+    def material_count(self) -> int:
+        """
+        Number of materials of the static geometry.
+        """
     @property
     def materials(self) -> dict[str, Material]:
         """
-        A dict of static geometry's materials by their names, in their order: the file's names, "material 3"
-        for one without a name, "wood.2" for the second "wood".
+        Dict of the materials of the static geometry by name, in their order. Names are those of the file; a
+        material without a name is "material 3", the second "wood" is "wood.2".
         """
     @property
     def motions(self) -> tuple[tuple[tuple[float, ...], NDArray[np.float64]] | None, ...]:
         """
-        For each instance None, or (times_s, (K, 4, 4) scene_from_object) of one that moves.
+        For each instance (times_s, (K, 4, 4) scene_from_object), or None if it does not move.
         """
     @property
     def triangle_count(self) -> int:
         """
-        Of static geometry and all instances.
+        Number of triangles of the static geometry and all instances.
         """
     @property
     def warnings(self) -> list[str]:
         """
-        What the reader put up with, such as a missing texture.
+        List of minor faults that the reader found, such as a missing texture.
         """
 
 @final
 class RenderSettings:
     """
-    How a picture is taken; a value, as rc.render, rc.Session, rc.LiveView, rc.plan and rc.Shot take it.
+    Settings of a picture, for rc.render, rc.Session, rc.LiveView, rc.plan and rc.Shot. Immutable.
 
-    spp: samples per pixel, or "auto": as many as the noise needs, more where it is noisier, by tiles of 16 pixels
-    (docs/sampling.md). noise: the noise goal then, as a share of a tile's light (of a hundredth of white where that
-    is more), or noise_codes: in 8-bit codes of the developed picture; 1 code unless said. seconds, max_spp (4096):
-    no more samples are taken after so long, and of a pixel no more than so many; warns where the noise is still
-    larger then.
-    max_bounces: 0 for direct light only, 1 for one reflection more, up to 64; "auto": as many as the shot calls for,
-    by threshold_codes (docs/plan.md).
-    transport: "paths" for all light paths, "whitted" for direct light and what mirrors and smooth glass show.
-    clamp_cd_m2: radiance above which what comes by a bounce is cut off, for fewer bright dots and a picture that is
-    too dark; 0: never. threads: 0 for all.
-    layers: names of what else Image.layers is to hold, or "all" (docs/layers.md), which leaves dual_pixel out.
-    effects: "auto": what the shot calls for, and the cheapest camera model that shows it, by thresholds: those of
-    quality, "draft" (2 pixels, 4 codes), "photo" (0.5, 1) or "reference" (0.1, 0.25), or threshold_px and
-    threshold_codes; or names of optional effects (rc.effects() lists them; docs/dispersion.md), () for none.
-    Warns of what the lens cannot give of them.
-    illuminant: of dispersion and diffraction, the spectrum of all light: "D65", "D50", "A", "FL2", a wavelength in nm,
-    or (wavelength_nm, power) pairs; None: D65. As an attribute it is a text.
-    pupil_sampling: where a full lens's rays are sent: "outline", where real rays were found to pass; to compare
-    with it (docs/accuracy.md), "rear_element", "exit_pupil", or "pixel", where the pixel's earlier samples have
-    passed.
-    light_tracing: how a full lens's images of lights are found that are small or out of focus: "weighted", by samples
-    of pixels and by samples from the lights; to compare with it, "alone", from the lights, or "off", by samples of
-    pixels, which never meet point lights and suns.
+    spp: samples per pixel, or "auto": adaptive sampling up to a noise goal, by tiles of 16 x 16 pixels (docs/sampling.md).
+    noise, noise_codes: noise goal with spp="auto": RMS error of the pixels of a tile, as a fraction of the tile's mean (or
+      of a hundredth of white if that is larger), or in codes (steps) of the developed 8-bit picture. Default: 1 code.
+    seconds, max_spp: limits with spp="auto": time for sampling, and samples of a pixel (default 4096). A warning is
+      issued if the goal is not reached.
+    seed: of the random numbers, 0 to 2^32 - 1.
+    max_bounces: maximum number of bounces of a path, 0 (direct light only) to 64; "auto": as many as the shot requires,
+      by threshold_codes (docs/plan.md).
+    transport: "paths": all light paths; "whitted": direct light, and specular reflection and refraction.
+    clamp_cd_m2: upper limit of the radiance of indirect light, which reduces bright dots and darkens the picture; 0: none.
+    threads: number of CPU threads; 0: all.
+    layers: names of additional layers of Image.layers (docs/layers.md), or "all", which does not include dual_pixel.
+    effects: names of optional effects (rc.effects() lists them), or () for none; or "auto": the planner selects the
+      effects that the shot requires, and the cheapest camera model that shows them (docs/plan.md). Warns of effects that
+      the lens cannot show.
+    quality: thresholds of the planner: "draft" (2 pixels, 4 codes), "photo" (0.5, 1) or "reference" (0.1, 0.25).
+    threshold_px, threshold_codes: thresholds of the planner instead of those of quality: an effect is simulated if the
+      picture without it would differ by more pixels or codes.
+    illuminant: spectrum of all light, for dispersion and diffraction: "D65", "D50", "A", "FL2", a wavelength in nm, or
+      (wavelength_nm, power) pairs; None: D65. The attribute is a text.
+    lens_filter: absorbing filter in front of the lens (docs/filters.md): "ND8" or 1/8 passes an eighth of the light, "ND0.9"
+      has the optical density 0.9, and (wavelength_nm, transmittance) pairs are a coloured filter, which needs dispersion
+      or diffraction. None: no filter. The attribute is a text.
+    pupil_sampling: part of the pupil to which the full lens's rays are sent: "outline": the region through which real
+      rays pass. The others are for comparison (docs/accuracy.md): "rear_element", "exit_pupil", and "pixel", the region in
+      which the pixel's earlier samples passed.
+    light_tracing: method for the full lens's images of lights that are small or out of focus: "weighted": samples of
+      pixels and samples from the lights, combined by multiple importance sampling. The others are for comparison: "alone":
+      samples from the lights; "off": samples of pixels, which never hit point lights and suns.
 
     Raises InputError.
     """
@@ -2560,13 +3074,14 @@ class RenderSettings:
         threshold_px: float | None = None,
         threshold_codes: float | None = None,
         illuminant: str | float | Sequence[tuple[float, float]] | None = None,
+        lens_filter: str | float | Sequence[tuple[float, float]] | None = None,
         pupil_sampling: str = "outline",
         light_tracing: str = "weighted",
     ) -> None: ...
-    def with_(self, **changes: Unpack[_SettingWords]) -> RenderSettings:
+    def with_(self, **changes: Unpack[_SettingsKwargs]) -> RenderSettings:
         """
-        The same with changes, named as those of the constructor. What a change leaves without a meaning goes too: what
-        is wanted of the noise with a number of samples, an illuminant with the last effect that uses it. Raises InputError.
+        Returns a copy with changes, by the keywords of the constructor. Settings that a change makes meaningless are removed:
+        the noise goal if spp is a number, and the illuminant if no effect uses it. Raises InputError.
         """
     @property
     def clamp_cd_m2(self) -> float: ...
@@ -2576,6 +3091,8 @@ class RenderSettings:
     def illuminant(self) -> str | None: ...
     @property
     def layers(self) -> tuple[str, ...]: ...
+    @property
+    def lens_filter(self) -> str | None: ...
     @property
     def light_tracing(self) -> str: ...
     @property
@@ -2606,42 +3123,54 @@ class RenderSettings:
 @final
 class RenderStats:
     """
-    What a picture cost. Stage seconds are summed over the threads.
+    Render time and number of rays of a picture.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     @property
-    def device(self) -> str: ...
+    def device(self) -> str:
+        """
+        Name of the device.
+        """
     @property
-    def lens_seconds(self) -> float: ...
+    def lens_seconds(self) -> float:
+        """
+        Time in the lens trace, summed over all threads.
+        """
     @property
-    def other_seconds(self) -> float: ...
+    def other_seconds(self) -> float:
+        """
+        Other time, summed over all threads.
+        """
     @property
     def passed_rays(self) -> int:
         """
-        That left it.
+        Number of them that passed the lens.
         """
     @property
     def sampled_rays(self) -> int:
         """
-        Sent into the lens.
+        Number of rays sent into the lens from the film.
         """
     @property
     def scene_rays(self) -> int:
         """
-        Camera, shadow and bounce rays.
+        Number of rays in the scene: camera, shadow and bounce rays.
         """
     @property
-    def scene_seconds(self) -> float: ...
+    def scene_seconds(self) -> float:
+        """
+        Time in ray-scene intersection and shading, summed over all threads.
+        """
     @property
     def seconds(self) -> float:
         """
-        Wall clock, all of it.
+        Total time (wall clock).
         """
     @property
     def setup_seconds(self) -> float:
         """
-        Pupil and scene; part of seconds.
+        Part of seconds spent on the pupil and the scene's acceleration structures.
         """
 
 def _render(
@@ -2651,125 +3180,144 @@ def _render(
     device: str,
     progress: Callable[[float], bool | None] | None,
     keeps_stopped: bool,
-) -> _Picture: ...
-def _effect_notices(lens: Lens, settings: RenderSettings) -> list[str]: ...
+) -> _Picture:
+    """
+    Internal: use realcam.render. Returns the fields of an Image. keeps_stopped: if progress stops rendering,
+    return the picture of the samples taken so far instead of raising Cancelled.
+    """
+
+def _effect_notices(lens: Lens, settings: RenderSettings) -> list[str]:
+    """
+    Internal. Returns sentences about named effects that the lens cannot show, or only approximately.
+    """
 
 @final
 class EffectInfo:
     """
-    Optional effect of a picture. str() is a line of it.
+    Optional effect of a picture. str() returns its name and description in a line.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     @property
     def cpu_time(self) -> float:
         """
-        Of a picture with it over one without (benchmarks/effects.py); 0: not measured.
+        Render time with the effect over that without it, on a CPU core (benchmarks/effects.py); 0: not measured.
         """
     @property
     def description(self) -> str:
         """
-        What it is and needs, in a line.
+        Description and requirements in a line.
         """
     @property
     def gpu_time(self) -> float:
         """
-        Likewise.
+        Render time with the effect over that without it, on a GPU; 0: not measured.
         """
     @property
     def has_wavelengths(self) -> bool:
         """
-        Samples have one each, so that an illuminant can be named.
+        True if each sample has a wavelength, so that RenderSettings(illuminant=...) applies.
         """
     @property
     def is_on(self) -> bool:
         """
-        Unless it is left out, as "-name".
+        True if the effect is simulated unless it is switched off by "-name".
         """
     @property
     def name(self) -> str:
         """
-        For effects=(...).
+        Name, for RenderSettings(effects=...).
         """
     @property
     def needs(self) -> str:
         """
-        Of lens, scene and camera.
+        Requirements on lens, scene and camera.
         """
     @property
     def needs_coatings(self) -> bool:
         """
-        In the lens file; else they are guessed.
+        True if the effect uses the coatings in the lens file; without them the result is a guess.
         """
     @property
     def needs_full_lens(self) -> bool:
         """
-        The camera model "full".
+        True if the effect requires the camera model "full".
         """
     @property
     def parameter(self) -> float | None:
         """
-        What name alone means of "name=number"; None: it has none.
+        Default of the number in "name=number"; None: the effect has no parameter.
         """
     @property
     def shows_in_previews(self) -> bool:
         """
-        In pictures of fewer pixels than were asked for.
+        True if the effect is simulated in previews, which have fewer pixels than the picture.
         """
     @property
     def usage(self) -> str:
         """
-        What else to know, or "".
+        Further notes; may be empty.
         """
     @property
     def what(self) -> str:
         """
-        It is.
+        Description.
         """
 
 def effects() -> list[EffectInfo]:
     """
-    All effects that can be named.
+    Returns the list of all optional effects, for RenderSettings(effects=...).
     """
 
 def develop(exposure: ArrayLike, iso: float, tone: str = "film") -> NDArray[np.uint8]:
     """
-    Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become
-    middle grey, 118. tone: "film" (soft highlights) or "linear" (clipped).
+    Converts film exposure to 8-bit sRGB values of the same shape.
+    exposure: in lux seconds, any shape. iso: sensitivity; an exposure of 10 / iso lux seconds becomes middle grey, 118.
+    tone: tone curve, "film" (soft highlights) or "linear" (clipped highlights). Raises InputError.
     """
 
-def _metered_exposure(exposure: ArrayLike) -> float: ...
+def _metered_exposure(exposure: ArrayLike) -> float:
+    """
+    Internal. Returns the average exposure of a picture as a light meter sees it, in lux seconds.
+    """
 
 @final
 class Device:
     """
-    What this machine can render with. str() is a line of it.
+    Device that this machine can render with. str() returns name and description.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     @property
     def description(self) -> str:
         """
-        For people.
+        Model of the processor or GPU.
         """
     @property
     def name(self) -> str:
         """
-        For device=...: "cpu", "cuda:0", ...
+        Name, for device=...: "cpu", "cuda:0", ...
         """
 
 def devices() -> list[Device]:
     """
-    All devices of this machine, the CPU first.
+    Returns the list of all devices of this machine, the CPU first.
     """
 
-def _name_cuda_plugin(path: bytes) -> None: ...
-def _number_text(value: float, digits: int) -> str: ...
+def _name_cuda_plugin(path: bytes) -> None:
+    """
+    Internal. Sets the path of the CUDA plug-in, which is loaded when a GPU is first used.
+    """
+
+def _number_text(value: float, digits: int) -> str:
+    """
+    Internal. Formats a number with this number of significant digits.
+    """
 
 @final
 class PlanDecision:
     """
-    One thing that a picture may have or do without.
+    Decision of a Plan: whether an effect is simulated.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
@@ -2778,71 +3326,97 @@ class PlanDecision:
     @property
     def by(self) -> str:
         """
-        "planner", or "user" where the effect was named.
+        Who decided: "planner", or "user" if the effect was named.
         """
     @property
-    def effect(self) -> str: ...
+    def effect(self) -> str:
+        """
+        Name of the effect, or of another choice such as the bounces.
+        """
     @property
-    def is_kept(self) -> bool: ...
+    def is_kept(self) -> bool:
+        """
+        True if the effect is simulated.
+        """
     @property
-    def reason(self) -> str: ...
+    def reason(self) -> str:
+        """
+        Explanation of the decision.
+        """
     @property
     def size(self) -> float:
         """
-        By how much the picture changes where it is left out.
+        Change of the picture if the effect is left out.
         """
     @property
-    def threshold(self) -> float: ...
+    def threshold(self) -> float:
+        """
+        Size from which the planner keeps the effect.
+        """
     @property
     def time_share(self) -> float | None:
         """
-        What the effect by itself adds to the picture's time, as a share of that without effects,
-        measured on the device; None: not measured.
+        Additional render time of the effect alone, relative to the time without effects, measured on
+        the device; None: not measured.
         """
     @property
     def unit(self) -> str:
         """
-        Of size and threshold: "px", or "codes" of 8 bits.
+        Unit of size and threshold: "px" (pixels), or "codes" (steps of an 8-bit picture).
         """
 
 @final
 class Plan:
     """
-    What a shot calls for. str() makes a table of it.
+    Camera model, effects and bounces that a shot requires (rc.plan). str() returns a table of the decisions.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     @property
-    def decisions(self) -> list[PlanDecision]: ...
+    def decisions(self) -> list[PlanDecision]:
+        """
+        List of PlanDecisions.
+        """
     @property
     def effects(self) -> list[str]:
         """
-        Names, as render takes them.
+        Names of the effects, for RenderSettings(effects=...).
         """
     @property
-    def max_bounces(self) -> int: ...
+    def max_bounces(self) -> int:
+        """
+        Maximum number of bounces of a path.
+        """
     @property
     def model(self) -> str:
         """
-        The cheapest camera model that looks like every surface of the lens.
+        The cheapest camera model whose picture does not differ visibly from the model "full".
         """
     @property
     def summary(self) -> str:
         """
-        What was decided, in a line, as it is in a picture's metadata.
+        The decisions in one line, as in a picture's metadata.
         """
 
-def _plan(scene: Scene, camera: Camera, settings: RenderSettings, device: str, times: bool) -> Plan: ...
+def _plan(scene: Scene, camera: Camera, settings: RenderSettings, device: str, times: bool) -> Plan:
+    """
+    Internal: use realcam.plan. times: True measures the render time of each effect.
+    """
+
 def _resolve_film(
     scene: Scene, camera: Camera, others: Sequence[Camera], settings: RenderSettings, device: str
-) -> tuple[str, RenderSettings, str, str]: ...
+) -> tuple[str, RenderSettings, str, str]:
+    """
+    Internal. Plans a video from the camera of its first frame and those of other frames. Returns (camera model,
+    settings, summary, warning); the texts are empty without a plan.
+    """
 
 @final
 class CameraKey:
     """
-    What the rings and dials of a camera say at a time of a film.
+    Keyframe of a camera's settings, at a time of a video.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
@@ -2863,50 +3437,90 @@ class CameraKey:
         interpolation: str = "linear",
     ) -> None:
         """
-        lens: a cut to another Lens, which is on the camera from here on; until the first of them, the camera's
-        own is. The rings of a lens, focus_m to blade_rotation_deg, go between its own keys alone. One without
-        keys for focus and f-number takes over those of the lens before, whatever it has itself.
-        focus_m: object plane to film, or inf. focal_length_mm: of a zoom lens at rest. What is None is that of
-        the keys beside. film_shift_mm: (right, up). Between keys it, 1 / focus_m, and rounding and angle of the
-        blades change evenly, and the others by even ratios; lens and blades jump. interpolation: of the way
-        from here on; "smooth" goes from rest to rest, and through the smooth keys between without a stop;
-        "step" stays, and jumps at the next key. Raises InputError.
+        A setting that is None is interpolated between the neighbouring keys that have a value.
+        time_s: time of the key, in seconds of the scene.
+        lens: a cut to another Lens, which the camera has from this key on; before the first key with a lens it has its own.
+          focus_m to blade_rotation_deg are interpolated between keys of the same lens only. A lens without keys for focus or
+          f-number takes over the last values of the lens before it.
+        focus_m: distance from the object plane to the film, inf allowed. focal_length_mm: of a zoom lens focused at infinity.
+        f_number: as engraved. blades: number of diaphragm blades. blade_rounding, blade_rotation_deg: see Lens().
+        exposure_time_s, iso: exposure. film_shift_mm: (right, up), see Film().
+        interpolation: from this key to the next: "linear"; "smooth": starts and ends with slope 0, and passes smooth keys in
+          between without a stop; "step": constant, with a jump at the next key.
+        film_shift_mm, blade_rounding, blade_rotation_deg and 1 / focus_m are interpolated linearly, the other numbers in their
+        logarithms; lens and blades jump. Raises InputError.
         """
     @property
-    def blade_rotation_deg(self) -> float | None: ...
+    def blade_rotation_deg(self) -> float | None:
+        """
+        Rotation of the diaphragm.
+        """
     @property
-    def blade_rounding(self) -> float | None: ...
+    def blade_rounding(self) -> float | None:
+        """
+        0 for straight blade edges to 1 for a circle.
+        """
     @property
-    def blades(self) -> int | None: ...
+    def blades(self) -> int | None:
+        """
+        Number of diaphragm blades from this key on.
+        """
     @property
-    def exposure_time_s(self) -> float | None: ...
+    def exposure_time_s(self) -> float | None:
+        """
+        Exposure time.
+        """
     @property
-    def f_number(self) -> float | None: ...
+    def f_number(self) -> float | None:
+        """
+        f-number as engraved.
+        """
     @property
-    def film_shift_mm(self) -> tuple[float, float] | None: ...
+    def film_shift_mm(self) -> tuple[float, float] | None:
+        """
+        (right, up), shift of the film's centre from the lens's axis.
+        """
     @property
-    def focal_length_mm(self) -> float | None: ...
+    def focal_length_mm(self) -> float | None:
+        """
+        Focal length of a zoom lens focused at infinity.
+        """
     @property
-    def focus_m(self) -> float | None: ...
+    def focus_m(self) -> float | None:
+        """
+        Distance from the object plane to the film.
+        """
     @property
-    def interpolation(self) -> str: ...
+    def interpolation(self) -> str:
+        """
+        "linear", "smooth" or "step", from this key to the next.
+        """
     @property
-    def iso(self) -> float | None: ...
+    def iso(self) -> float | None:
+        """
+        Sensitivity.
+        """
     @property
-    def lens(self) -> Lens | None: ...
+    def lens(self) -> Lens | None:
+        """
+        Lens from this key on; None: no cut.
+        """
     @property
-    def time_s(self) -> float: ...
+    def time_s(self) -> float:
+        """
+        Time of the key, in seconds of the scene.
+        """
 
 @final
 class Shake:
     """
-    The shake of a camera in the hand: a curve that was measured, one that is drawn, or both, which are added.
+    Camera shake: a measured curve, a random process, or the sum of both.
     """
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Shake:
         """
-        Reads a curve from a .csv, whose first line names its columns: time_s, x_deg, y_deg, z_deg, x_m, y_m,
-        z_m; but for the time any may be missing. Raises InputError naming file and line.
+        Reads a curve from a .csv file, whose first line names its columns: time_s, x_deg, y_deg, z_deg, x_m,
+        y_m, z_m. All but time_s may be missing. Raises InputError with file and line.
         """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
@@ -2920,87 +3534,154 @@ class Shake:
         curve: Sequence[tuple[float, _Triple, _Triple]] = [],
     ) -> None:
         """
-        rms_deg, rms_mm: of each angle and of each shift, about and along the camera's axes to the right, up and
-        back. Each is a Gaussian process of its own, drawn with the seed, with the one-sided spectrum
-        4 rms^2 / (pi corner_hz) / (1 + (f / corner_hz)^2)^2 over the frequency f, up to ten corners.
-        curve: (time_s, (x, y, z) in degrees, (x, y, z) in metres) in rising order of time; about x, then y,
-        then z. Raises InputError.
+        rms_deg, rms_mm: RMS of each rotation angle and of each displacement of the random process, about and
+          along the camera's axes right, up and backward. Each is an independent Gaussian process with the one-sided power
+          spectrum 4 rms^2 / (pi corner_hz) / (1 + (f / corner_hz)^2)^2 over the frequency f, up to 10 corner_hz.
+        corner_hz: corner frequency of the spectrum. seed: of the random numbers.
+        curve: list of (time_s, (x, y, z) in degrees, (x, y, z) in metres), in increasing order of time; rotations about x, then
+          y, then z. Raises InputError.
         """
     def at(self, times_s: Sequence[float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """
-        Where it has the camera at (N,) times: angles (N, 3) in degrees, and shifts (N, 3) in metres.
+        Returns the rotations (N, 3) in degrees and the displacements (N, 3) in metres of the camera at times (N,).
         """
     @property
-    def corner_hz(self) -> float: ...
+    def corner_hz(self) -> float:
+        """
+        Corner frequency of the spectrum.
+        """
     @property
-    def curve(self) -> tuple[tuple[float, tuple[float, float, float], tuple[float, float, float]], ...]: ...
+    def curve(self) -> tuple[tuple[float, tuple[float, float, float], tuple[float, float, float]], ...]:
+        """
+        Measured curve: (time_s, (x, y, z) in degrees, (x, y, z) in metres) for each point.
+        """
     @property
-    def rms_deg(self) -> float: ...
+    def rms_deg(self) -> float:
+        """
+        RMS of each angle of the random process.
+        """
     @property
-    def rms_mm(self) -> float: ...
+    def rms_mm(self) -> float:
+        """
+        RMS of each displacement of the random process.
+        """
     @property
-    def seed(self) -> int: ...
+    def seed(self) -> int:
+        """
+        Seed of the random process.
+        """
 
-def _check_camera_keys(camera: Camera, keys: Sequence[CameraKey]) -> None: ...
-def _camera_at(camera: Camera, keys: Sequence[CameraKey], shake: Shake | None, opens_s: float) -> Camera: ...
+def _check_camera_keys(camera: Camera, keys: Sequence[CameraKey]) -> None:
+    """
+    Internal. Raises InputError if keys are invalid or the camera cannot be set to one of them.
+    """
+
+def _camera_at(camera: Camera, keys: Sequence[CameraKey], shake: Shake | None, opens_s: float) -> Camera:
+    """
+    Internal. Returns the camera of the frame whose shutter opens at opens_s, in seconds of the scene.
+    """
+
 def _frames_to_plan(
     numbers: Sequence[int], camera: Camera, keys: Sequence[CameraKey], frames_per_second: float
-) -> list[int]: ...
-def _frame_seed(seed: int, number: int) -> int: ...
+) -> list[int]:
+    """
+    Internal. Selects from the frame numbers of a video those whose cameras the planner looks at.
+    """
+
+def _frame_seed(seed: int, number: int) -> int:
+    """
+    Internal. Returns the seed of a frame of a video.
+    """
+
 def _followed_isos(
     scene: Scene,
     camera: Camera,
     keys: Sequence[CameraKey],
     settings: RenderSettings,
-    numbers: Sequence[int],
+    frames: Sequence[int],
     frames_per_second: float,
     smoothing_s: float,
     device: str,
-) -> list[float]: ...
-def _shot_keys() -> list[tuple[str, str | None, str, str, str]]: ...
+) -> list[float]:
+    """
+    Internal. Returns the ISO of each frame of a video with continuous metering. smoothing_s: time constant.
+    """
+
+def _shot_keys() -> list[tuple[str, str | None, str, str, str]]:
+    """
+    Internal. Returns (name, option, group, placeholder, help) of each key of shot files; option may be None.
+    """
+
 def _read_shot(
     path: str | os.PathLike[str],
     changes: str,
-    words: Mapping[str, str],
+    options: Mapping[str, str],
     scene: Scene | None,
     lens: Lens | None,
     denoises: bool,
     device: str,
-) -> tuple[_Shot, bool]: ...
+) -> tuple[_Shot, bool]:
+    """
+    Internal: use realcam.Shot. Returns the attributes of a Shot, and True if neither spp nor a noise goal is
+    specified. changes: TOML text that overrides the file; options: values by key name, as on the command line. scene, lens:
+    replace those of the file unless None. denoises: True if the picture will be denoised. device: meters the exposure.
+    """
+
 def _metadata(
     camera: Camera, settings: RenderSettings, spp: int, seed: int, plan: str, denoiser: str
-) -> dict[str, str]: ...
+) -> dict[str, str]:
+    """
+    Internal. Returns the metadata of an image file, text by name.
+    """
 
 @final
 class LiveFrame:
     """
-    A picture of a LiveView, on its way from the device.
+    A frame of a LiveView, which the device may still be rendering.
     """
     @property
     def codes(self) -> NDArray[np.uint8]:
         """
-        (H, W, 3) uint8, sRGB, read-only; waits for the picture. Raises DeviceError; Cancelled after cancel();
-        KeyboardInterrupt on Ctrl-C.
+        (H, W, 3) uint8, read-only: the 8-bit sRGB values of the frame. Waits until it is complete. Raises
+        DeviceError; Cancelled if cancel() was called; KeyboardInterrupt on Ctrl-C.
         """
     @property
     def ready(self) -> bool:
         """
-        Whether codes would return at once.
+        True if the frame is complete, so that codes returns without waiting.
         """
     @property
     def samples(self) -> int:
         """
-        Per pixel, collected up to this frame.
+        Number of samples per pixel that were accumulated up to this frame.
         """
 
 @final
 class _LiveView:
+    """
+    Internal: use realcam.LiveView.
+    """
     def __init__(self, scene: Scene, device: str) -> None: ...
-    def cancel(self) -> None: ...
-    def image(self, camera: Camera, settings: RenderSettings) -> _Picture: ...
-    def picture(self) -> tuple[DeviceArray | NDArray[np.float32], DeviceArray | NDArray[np.float32]]: ...
-    def shoot(self, camera: Camera, settings: RenderSettings, tone: str) -> LiveFrame: ...
-    def show(self, scene: Scene) -> None: ...
+    def cancel(self) -> None:
+        """
+        Cancels frames in progress, which then raise Cancelled.
+        """
+    def image(self, camera: Camera, settings: RenderSettings) -> _Picture:
+        """
+        Returns the fields of an Image of the last frame's camera and settings, with layers.
+        """
+    def picture(self) -> tuple[DeviceArray | NDArray[np.float32], DeviceArray | NDArray[np.float32]]:
+        """
+        Returns exposure (H, W, 3) in lux seconds and depth (H, W) in m of the accumulated samples.
+        """
+    def shoot(self, camera: Camera, settings: RenderSettings, tone: str) -> LiveFrame:
+        """
+        Starts to render a frame and returns it meanwhile.
+        """
+    def show(self, scene: Scene) -> None:
+        """
+        Sets the scene of the frames that follow.
+        """
 
 _PIXEL_SUM: np.dtype[np.void]
 _LAYER_SUM: np.dtype[np.void]
@@ -3011,69 +3692,146 @@ _SAMPLED_LAYERS: set[str]
 
 def _developed_exposure(
     pixels: ArrayLike, splats: list[_Splats], settings: RenderSettings, exposure_time_s: float
-) -> NDArray[np.float32]: ...
-def _traced_exposure(splats: list[_Splats], exposure_time_s: float) -> NDArray[np.float32]: ...
+) -> NDArray[np.float32]:
+    """
+    Internal. Returns the exposure (H, W, 3) in lux seconds of accumulated pixel sums and splats.
+    """
+
+def _traced_exposure(splats: list[_Splats], exposure_time_s: float) -> NDArray[np.float32]:
+    """
+    Internal. Returns the exposure (H, W, 3) in lux seconds of the splats alone: light traced from the lights.
+    """
 
 @final
 class _Rounds:
+    """
+    Internal. Adaptive sampling of a picture whose samples are taken elsewhere.
+    """
     @staticmethod
-    def first_samples(settings: RenderSettings) -> int: ...
+    def first_samples(settings: RenderSettings) -> int:
+        """
+        Returns the number of samples per pixel of the first round.
+        """
     def __init__(
         self, settings: RenderSettings, iso: float, exposure: ArrayLike, samples: ArrayLike, traced: ArrayLike
-    ) -> None: ...
-    def add(self, exposure: ArrayLike, counts: ArrayLike, traced: ArrayLike) -> None: ...
-    def left(self) -> float: ...
-    def next(self) -> NDArray[np.uint32]: ...
-    def shortfall(self) -> str: ...
+    ) -> None:
+        """
+        settings: only their noise goal is used. exposure: (H, W, 3), of the samples so far, lux seconds;
+        samples: (H, W), their number in each pixel. traced: part of the exposure traced from the lights; empty if there is
+        none.
+        """
+    def add(self, exposure: ArrayLike, counts: ArrayLike, traced: ArrayLike) -> None:
+        """
+        Adds the picture after a round. exposure, traced: of all samples; counts: samples of the round, (H, W).
+        """
+    def left(self) -> float:
+        """
+        Returns the approximate number of samples, over all pixels, still required.
+        """
+    def next(self) -> NDArray[np.uint32]:
+        """
+        Returns how many more samples each pixel needs in the next round, (H, W); all 0 when finished.
+        """
+    def shortfall(self) -> str:
+        """
+        Returns a sentence if the noise goal has not been reached, otherwise an empty text.
+        """
     @property
-    def traces_lights(self) -> bool: ...
+    def traces_lights(self) -> bool:
+        """
+        True if light is to be traced from the lights in the next round.
+        """
 
 @final
 class _Session:
+    """
+    Internal: use realcam.Session. One picture that accumulates samples.
+    """
     def __init__(self, scene: Scene, camera: Camera, settings: RenderSettings, device: str) -> None: ...
-    def add(self, spp: int) -> None: ...
-    def add_until(self, wanted: RenderSettings) -> _Reached: ...
-    def cancel(self) -> None: ...
-    def expose_region(
-        self, region: tuple[int, int, int, int], first: int, count: int, counts: ArrayLike | None = None
-    ) -> _RegionSums: ...
-    def expose_splats(self, first: int, count: int) -> list[_Splats]: ...
-    def picture(self) -> _Picture: ...
+    def add(self, spp: int) -> None:
+        """
+        Takes spp more samples of each pixel.
+        """
+    def add_until(self, settings: RenderSettings) -> _Reached:
+        """
+        Takes samples until the noise goal of these settings is reached.
+        """
+    def cancel(self) -> None:
+        """
+        Ends the running call of another thread, which raises Cancelled.
+        """
+    def layer_sums_of_region(self, region: tuple[int, int, int, int], first: int, count: int) -> NDArray[np.void]:
+        """
+        Returns layer sums of a region, of the first surfaces that these samples hit.
+        """
+    def picture(self) -> _Picture:
+        """
+        Returns the fields of an Image of all samples so far.
+        """
     def picture_of(
         self, pixels: ArrayLike, layers: ArrayLike | None, splats: list[_Splats], stats: Mapping[str, float]
-    ) -> _Picture: ...
-    def see_region(self, region: tuple[int, int, int, int], first: int, count: int) -> NDArray[np.void]: ...
-    def set(self, scene: Scene, camera: Camera, settings: RenderSettings) -> None: ...
+    ) -> _Picture:
+        """
+        Returns the fields of an Image of a film that was accumulated from parts.
+        """
+    def sample_region(
+        self, region: tuple[int, int, int, int], first: int, count: int, counts: ArrayLike | None = None
+    ) -> _RegionSums:
+        """
+        Returns pixel sums of a region, for count samples with indices from first. region: (column, row, width,
+        height). counts: number of the samples that each pixel takes, row by row; None: all.
+        """
+    def sample_splats(self, first: int, count: int) -> list[_Splats]:
+        """
+        Returns films of the light that is traced apart from the samples of pixels.
+        """
+    def set(self, scene: Scene, camera: Camera, settings: RenderSettings) -> None:
+        """
+        Sets what is photographed. A change of the picture discards the samples.
+        """
     @property
-    def camera(self) -> Camera: ...
+    def camera(self) -> Camera:
+        """
+        The current camera.
+        """
     @property
-    def device(self) -> str: ...
+    def device(self) -> str:
+        """
+        Name of the device, for people.
+        """
     @property
-    def samples(self) -> NDArray[np.int64]: ...
+    def samples(self) -> NDArray[np.int64]:
+        """
+        (H, W): number of samples of each pixel.
+        """
     @property
-    def scene(self) -> Scene: ...
+    def scene(self) -> Scene:
+        """
+        The current scene.
+        """
 
 def sensor_names() -> list[str]:
     """
-    Names of the bundled sensors.
+    Returns the names of the bundled sensors.
     """
 
 @final
 class Sensor:
     """
-    An image sensor, by the linear model of EMVA standard 1288 (docs/sensor.md). A value.
+    Image sensor by the linear model of the EMVA standard 1288 (docs/sensor.md). Immutable.
     """
     @staticmethod
     def load(name_or_path: str | os.PathLike[str] = "ideal") -> Sensor:
         """
-        A bundled sensor by name, or a sensor file (.toml) by path. Raises InputError with file and line.
+        Reads a sensor: name of a bundled sensor, or path of a sensor file (.toml). Raises InputError with file and line.
         """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     def electrons_per_um2(self, illuminant: str = "D65") -> NDArray[np.float64]:
         """
-        (3, 3): electrons in a square micrometre under each filter (rows: red, green, blue) for one lux second of
-        each channel of the film (columns), cover glass included. Raises InputError.
+        Returns an array (3, 3): electrons per square micrometre under each filter (rows: red, green, blue) for
+        an exposure of one lux second in each channel of the film (columns), including the cover glass.
+        illuminant: spectrum of the light, as for RenderSettings. Raises InputError.
         """
     def expose(
         self,
@@ -3086,20 +3844,21 @@ class Sensor:
         threads: int = 0,
     ) -> RawImage:
         """
-        The RawImage that the sensor makes of an Image, on whose film it lies; the image stays as it is.
-        iso: None is the camera's. seed: of the noise of this exposure; serial: of what a sensor has for ever
-        (PRNU, DSNU, hot pixels). temperature_c: None is dark_current_temperature_c. threads: 0 is all.
-        The noise is the same for any number of threads. Each pixel of the picture is one of the sensor's;
-        a warning tells where the film's pixels have another size. Raises InputError.
+        Returns the RawImage of an exposure of the sensor, which lies in the place of the film of an Image.
+        iso: sensitivity; None: that of the camera. seed: of the noise of this exposure. serial: seed of the sensor's fixed
+          pattern (PRNU, DSNU, hot pixels). temperature_c: None: dark_current_temperature_c. threads: number of threads; 0: all.
+        Each pixel of the image is one pixel of the sensor; a UserWarning is issued if the film's pixels have another size. The
+        noise does not depend on the number of threads. Raises InputError.
         """
     def film(self) -> Film:
         """
-        A Film of the sensor's size with its pixels. Raises InputError where the sensor has none of its own.
+        Returns a Film with the sensor's size and pixels. Raises InputError if the sensor has no pixel pitch or resolution of its own.
         """
     def iso_range(self, pixel_pitch_um: float | None = None) -> tuple[float, float]:
         """
-        (lowest, highest) ISO number by saturation (ISO 12232: 78 over the lux seconds of D65 that saturate);
-        (0, inf) where the gain is whatever the ISO asks for. The highest is the lowest with the largest gain.
+        Returns the (lowest, highest) ISO number by saturation (ISO 12232: 78 over the exposure by D65, in lux
+        seconds, that saturates). The highest is that with the largest gain. (0, inf) if the gain follows from the ISO.
+        pixel_pitch_um: None: the sensor's own.
         """
     def replace(
         self,
@@ -3128,130 +3887,139 @@ class Sensor:
         hot_pixel_current_e_per_s: float | None = None,
     ) -> Sensor:
         """
-        The sensor with some of its values changed, as sensors/README.md describes them. None stays. Raises
-        InputError.
+        Returns the sensor with some properties changed. Arguments as the properties, which sensors/README.md
+        describes; None: unchanged. Raises InputError.
         """
     @property
     def adc_bits(self) -> int:
         """
-        Of the converter.
+        Number of bits of the analogue-to-digital converter.
         """
     @property
     def angular_response(self) -> tuple[tuple[float, float], ...]:
         """
-        (degrees from the axis, response relative to it); empty: 1.
+        Table of (angle of incidence in degrees, response relative to normal incidence); empty: 1.
         """
     @property
     def assumptions(self) -> tuple[str, ...]:
         """
-        What is not published, and what stands in its place: a text for each.
+        Texts: what data are not published, and what is assumed instead; and what replace() has changed.
         """
     @property
     def black_level_dn(self) -> float:
         """
-        Of no light.
+        Raw value without light, in digital numbers.
         """
     @property
     def color_filter_array(self) -> str:
         """
-        "RGGB" and so on, two rows of two from the top left; "": no filters.
+        Mosaic of colour filters such as "RGGB", two rows of two from the upper left; "": no filters.
         """
     @property
     def converter_noise_dn(self) -> float:
         """
-        After the gain, standard deviation.
+        Standard deviation of the noise after the gain, in digital numbers.
         """
     @property
     def cover_glass(self) -> tuple[tuple[float, float], ...]:
         """
-        (nm, transmission); empty: 1.
+        Table of (wavelength_nm, transmittance); empty: 1.
         """
     @property
     def dark_current_doubling_k(self) -> float:
         """
-        Kelvin in which the dark current doubles; 0: not known.
+        Temperature increase in kelvin that doubles the dark current; 0: unknown.
         """
     @property
     def dark_current_e_per_s(self) -> float:
         """
-        Mean of a pixel at dark_current_temperature_c.
+        Mean dark current of a pixel at dark_current_temperature_c, in electrons per second.
         """
     @property
     def dark_current_temperature_c(self) -> float:
         """
-        Degrees Celsius.
+        Temperature of the dark currents, in degrees Celsius.
         """
     @property
     def dsnu_e(self) -> float:
         """
-        Dark signal non-uniformity: deviation of the pixels' offsets.
+        Dark signal non-uniformity: standard deviation of the pixels' offsets, in electrons.
         """
     @property
     def full_well_e(self) -> float:
         """
-        Electrons that a pixel holds. EMVA 1288's saturation capacity lies some three deviations below.
+        Full-well capacity in electrons. EMVA 1288's saturation capacity is about three standard deviations lower.
         """
     @property
     def gain_dn_per_e(self) -> float:
         """
-        Overall system gain K at the lowest ISO; 0: whatever the ISO asks for.
+        Overall system gain K at the lowest ISO, in digital numbers per electron; 0: the gain follows from the ISO.
         """
     @property
     def hot_pixel_current_e_per_s(self) -> float:
         """
-        Mean of the hot pixels' current above the dark current; it is distributed exponentially.
+        Mean of the hot pixels' additional dark current, which is exponentially distributed, in electrons per second.
         """
     @property
     def hot_pixel_share(self) -> float:
         """
-        Of all pixels, 0 to 1.
+        Fraction of the pixels that are hot, 0 to 1.
         """
     @property
     def largest_gain_db(self) -> float:
         """
-        That can be added to it, 20 dB a factor of 10.
+        Largest additional gain in dB; 20 dB are a factor of 10.
         """
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """
+        Name, which identifies a bundled sensor.
+        """
     @property
     def pixel_pitch_um(self) -> float | None:
         """
-        None: that of the film's pixels.
+        Pixel pitch; None: that of the film's pixels.
         """
     @property
     def prnu_percent(self) -> float:
         """
-        Photo-response non-uniformity.
+        Photo-response non-uniformity: standard deviation of the pixels' responses, in percent.
         """
     @property
     def quantum_efficiency(self) -> tuple[tuple[float, ...], ...]:
         """
-        (nm, red, green, blue) or (nm, value): electrons per photon on the pixel's area.
+        Table of (wavelength_nm, red, green, blue), or without filters (wavelength_nm, value): electrons per photon on the pixel's area.
         """
     @property
     def read_noise_e(self) -> float:
         """
-        Temporal dark noise without exposure time, before the gain.
+        Read noise: temporal dark noise for zero exposure time, before the gain, in electrons (standard deviation).
         """
     @property
     def resolution(self) -> tuple[int, int] | None:
         """
-        (columns, rows); None: any.
+        (columns, rows) of pixels; None: any number.
         """
     @property
     def row_noise_e(self) -> float:
         """
-        What the pixels of a row have together, new in each exposure.
+        Standard deviation, in electrons, of the noise that is common to the pixels of a row in an exposure.
         """
     @property
     def saturation_capacity_e(self) -> float:
         """
-        As EMVA 1288 measures it: where the temporal variance is largest.
+        Saturation capacity in electrons as measured by EMVA 1288: at the maximum of the temporal variance.
         """
     @property
-    def source(self) -> str: ...
+    def source(self) -> str:
+        """
+        Origin of the data.
+        """
     @property
-    def title(self) -> str: ...
+    def title(self) -> str:
+        """
+        Description in one line.
+        """
 
 def _expose(
     sensor: Sensor,
@@ -3266,16 +4034,39 @@ def _expose(
     seed: int,
     serial: int,
     threads: int,
-) -> NDArray[np.uint16]: ...
-def _sensor_gain(sensor: Sensor, pixel_pitch_um: float, iso: float) -> float: ...
+) -> NDArray[np.uint16]:
+    """
+    Internal: use Sensor.expose. Returns raw values (H, W) uint16 of an exposure (H, W, 3) in lux seconds.
+    film_pitch_um, exit_pupil_distance_mm: determine the angles of incidence for the angular response.
+    """
+
+def _sensor_gain(sensor: Sensor, pixel_pitch_um: float, iso: float) -> float:
+    """
+    Internal. Returns the gain at an ISO, in digital numbers per electron.
+    """
+
 def _sensor_color(
     sensor: Sensor, illuminant: str
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
-def _read_toml(text: str, file: str) -> tuple[dict[str, Any], dict[str, int]]: ...
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """
+    Internal. Returns the raw colour of white (3,), and the matrices (3, 3) camera_from_xyz, film_from_balanced
+    and d50_from_balanced, for colours of the camera that are balanced by that white.
+    """
+
+def _read_toml(text: str, file: str) -> tuple[dict[str, Any], dict[str, int]]:
+    """
+    Internal. Parses TOML. Returns the values, and the line number of each top-level key. file: name of the file, for messages. Raises InputError with the line.
+    """
 
 @final
 class _Denoiser:
-    def __init__(self, device: str, threads: int, library: str) -> None: ...
+    """
+    Internal: use realcam.denoise. Open Image Denoise on a device.
+    """
+    def __init__(self, device: str, threads: int, library: str) -> None:
+        """
+        device: as for realcam.render. threads: of the CPU, 0 for all. library: path of the shared library, or "".
+        """
     def denoised(
         self,
         exposure: ArrayLike,
@@ -3283,25 +4074,79 @@ class _Denoiser:
         normal: ArrayLike,
         fast: bool,
         progress: Callable[[float], bool | None] | None = None,
-    ) -> NDArray[np.float32]: ...
+    ) -> NDArray[np.float32]:
+        """
+        Returns the denoised exposure. All arrays have the shape (H, W, 3). fast: lower quality in less time.
+        """
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """
+        Name of the denoiser, for metadata.
+        """
 
-def _lens_ray_rates(lens: Lens, seconds: float) -> dict[str, float]: ...
-def _gpu_lens_ray_rates(camera: Camera, device: str) -> dict[str, float]: ...
-def _gpu_hit_rates(scene: Scene, camera: Camera, device: str) -> dict[str, float]: ...
+def _lens_ray_rates(lens: Lens, seconds: float) -> dict[str, float]:
+    """
+    Internal. Measures lens rays per second on one CPU thread, for about this many seconds. Returns a dict: name
+    of the instruction set to rays per second.
+    """
+
+def _gpu_lens_ray_rates(camera: Camera, device: str) -> dict[str, float]:
+    """
+    Internal. Measures lens rays on a GPU. Returns a dict: "traced" and "generated", rays per second with given
+    origins and sampled by the camera model; "passed", the fraction of the generated rays that pass the lens. Raises
+    InputError if device is not a GPU.
+    """
+
+def _gpu_hit_rates(scene: Scene, camera: Camera, device: str) -> dict[str, float]:
+    """
+    Internal. Measures closest-hit queries on a GPU. Returns a dict: build_seconds and upload_seconds of the
+    bounding volume hierarchy; rays per second of camera rays, of cosine-distributed rays from their hits, and of uniform
+    rays. Raises InputError if device is not a GPU.
+    """
+
 def _help_text(
     usage: str, description: str, sections: Sequence[tuple[str, Sequence[tuple[str, str]]]], examples: Sequence[str]
-) -> str: ...
-def _did_you_mean(name: str, candidates: Sequence[str]) -> str: ...
-def _read_environment(path: bytes, layer: str) -> tuple[NDArray[np.float32], list[str]]: ...
-def _write_picture(path: bytes, image: object, film_tone: bool) -> None: ...
-def _write_codes(path: bytes, codes: ArrayLike, entries: Sequence[tuple[str, str]]) -> None: ...
-def _read_film(path: bytes) -> tuple[NDArray[np.float32], list[tuple[str, str]]]: ...
-def _run_command(words: list[bytes]) -> int: ...
-def _listed_commands() -> list[tuple[list[str], str, list[tuple[list[str], str, str]]]]: ...
+) -> str:
+    """
+    Internal. Returns a command's help page. sections: list of (title, list of (option or command, help text)).
+    """
 
-class _SettingWords(TypedDict, total=False):
+def _did_you_mean(name: str, candidates: Sequence[str]) -> str:
+    """
+    Internal. Returns the end of an error message that suggests the candidates most similar to a name; empty if no candidate is similar.
+    """
+
+def _read_environment(path: bytes, layer: str) -> tuple[NDArray[np.float32], list[str]]:
+    """
+    Internal: use realcam.read_environment. Returns the pixels (H, W, 3) and a list of warnings.
+    """
+
+def _write_picture(path: bytes, image: object, film_tone: bool) -> None:
+    """
+    Internal: use Image.save. film_tone: True for the tone curve "film", False for "linear".
+    """
+
+def _write_codes(path: bytes, codes: ArrayLike, entries: Sequence[tuple[str, str]]) -> None:
+    """
+    Internal. Writes 8-bit sRGB values (H, W, 3) with metadata, pairs (name, value), to an image file.
+    """
+
+def _read_film(path: bytes) -> tuple[NDArray[np.float32], list[tuple[str, str]]]:
+    """
+    Internal. Returns the exposure (H, W, 3) in lux seconds and the metadata, pairs (name, value), of a file.
+    """
+
+def _run_command(words: list[bytes]) -> int:
+    """
+    Internal. Runs a command and returns its exit status. words: arguments behind "realcam", by os.fsencode.
+    """
+
+def _listed_commands() -> list[tuple[list[str], str, list[tuple[list[str], str, str]]]]:
+    """
+    Internal. Returns all commands in C++ as (words, description, options); an option is (names, type, help).
+    """
+
+class _SettingsKwargs(TypedDict, total=False):
     spp: int | str
     noise: float | None
     noise_codes: float | None
@@ -3318,5 +4163,6 @@ class _SettingWords(TypedDict, total=False):
     threshold_px: float | None
     threshold_codes: float | None
     illuminant: str | float | Sequence[tuple[float, float]] | None
+    lens_filter: str | float | Sequence[tuple[float, float]] | None
     pupil_sampling: str
     light_tracing: str
