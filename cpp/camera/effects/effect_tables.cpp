@@ -47,12 +47,13 @@ EffectViews EffectTables::views(double film_angle) const {
                             film_path.free};
         const std::array<float, 9> mean = spectrum_->mean_film();
         std::copy(mean.begin(), mean.end(), views.dispersion.film);
-        if (effects_.filter)
-            for (std::size_t c = 0; c < 3; ++c) {
-                constexpr float kDark = 1e-3f;  // channels without light have no control variate
-                const float white = mean[3 * c] + mean[3 * c + 1] + mean[3 * c + 2];
-                views.dispersion.white_scale[c] = white > kDark ? 1 / white : 0;
-            }
+        if (effects_.filter) {
+            const auto white_of = [&](std::size_t c) { return mean[3 * c] + mean[3 * c + 1] + mean[3 * c + 2]; };
+            constexpr float kDark = 1e-3f;  // channels with less of the brightest one's light have no control variate
+            const float darkest = kDark * std::max({white_of(0), white_of(1), white_of(2)});
+            for (std::size_t c = 0; c < 3; ++c)
+                views.dispersion.white_scale[c] = white_of(c) > darkest ? 1 / white_of(c) : 0;
+        }
     }
     views.coatings = {data_of(coatings_), data_of(coatings_to_scene_), data_of(coatings_to_film_)};
     if (diffraction_) views.diffraction = diffraction_->view(film_angle);
