@@ -218,7 +218,7 @@ def test_coatings_are_part_of_the_value_and_stay_with_the_lens() -> None:
     [
         (lambda lens: lens.with_coating("silver"), rc.InputError, "has no mirror to coat"),
         (lambda lens: lens.with_coating("bare", [99]), rc.InputError, "there is no surface 99"),
-        (lambda lens: lens.with_coating("silver", [0]), rc.LensFileError, "surface 1: a metal or a reflectance"),
+        (lambda lens: lens.with_coating("silver", [0]), rc.LensFileError, "surface 1: only a mirror can have a metal or a reflectance"),
         (lambda lens: lens.with_coating("bare", [5]), rc.LensFileError, "surface 6: a stop or an aperture"),
         (lambda lens: lens.with_coating("shiny"), rc.InputError, "a coating must be one of"),
         (lambda lens: lens.transmission(0, polarisation="s"), rc.InputError, "expected traced or averaged"),
@@ -353,7 +353,7 @@ clear_semi_diameter_mm = 5.0
     ("part", "text", "message"),
     [
         ("front", 'coating = "quarter_wafe"', r':13: surface 2: unknown coating .*did you mean "quarter_wave"'),
-        ("front", 'coating = "silver"', r":8: surface 2: a metal or a reflectance is a mirror's"),
+        ("front", 'coating = "silver"', r":8: surface 2: only a mirror can have a metal or a reflectance"),
         ("front", "coating = 3", r':13: surface 2: "coating" must be a text'),
         ("top", 'default_coating = "mine"', r':3: unknown coating "mine"'),
         ("top", 'default_coating = "silver"', r":3: .*is for faces between air and glass"),
