@@ -106,16 +106,16 @@ def test_lamps_keep_their_light(focus_m: float) -> None:
 
 
 def test_what_is_missing_is_told_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(rc.InputError, match="wants the layers albedo, normal, traced_light; render") as error:
+    with pytest.raises(rc.InputError, match="requires the layers albedo, normal, traced_light; render") as error:
         picture(1, ("albedo",)).denoised()
     assert "\n" not in str(error.value)
     image = picture(1, GUIDES)
     monkeypatch.setenv("REALCAM_OIDN", NOWHERE)
-    with pytest.raises(rc.InputError, match=r"pip install realcam\[denoise\] brings it") as error:
+    with pytest.raises(rc.InputError, match=r"install it with pip install realcam\[denoise\]") as error:
         image.denoised()
     assert "\n" not in str(error.value)
     monkeypatch.setenv("REALCAM_OIDN", rc._core.__file__)  # another library
-    with pytest.raises(rc.InputError, match=r"oidnNewDevice.*; pip install realcam\[denoise\] brings it"):
+    with pytest.raises(rc.InputError, match=r"oidnNewDevice.*; install it with pip install realcam\[denoise\]"):
         opened("cpu")
 
 
@@ -169,7 +169,7 @@ def realcam(*words: str, folder: Path, library: str | None = None) -> subprocess
 def test_no_picture_is_begun_without_the_library(tmp_path: Path) -> None:
     done = realcam("-o", "a.png", "--denoise", folder=tmp_path, library=NOWHERE)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
-    assert "pip install realcam[denoise] brings it" in done.stderr
+    assert "install it with pip install realcam[denoise]" in done.stderr
     assert not (tmp_path / "a.png").exists()
     assert realcam("-o", "a.png", "--spp", "1", folder=tmp_path, library=NOWHERE).returncode == 0
 

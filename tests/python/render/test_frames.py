@@ -261,7 +261,7 @@ def test_a_job_makes_numbered_pictures_and_a_film(folder: Path, command: Command
 def test_a_film_is_written_as_a_whole_or_not_at_all(tmp_path: Path) -> None:
     pytest.importorskip("av", reason="realcam[video] is missing")
     sizes = (np.zeros((16, 16, 3), np.uint8), np.zeros((16, 18, 3), np.uint8))
-    with pytest.raises(rc.InputError, match="the frames of a film must have the same size"):
+    with pytest.raises(rc.InputError, match="the frames of a video must have the same size"):
         write_video(tmp_path / "film.mp4", sizes, 24)
     with pytest.raises(rc.ImageFileError, match=r"the folder .* does not exist"):
         write_video(tmp_path / "nowhere" / "film.mp4", sizes[:1], 24)

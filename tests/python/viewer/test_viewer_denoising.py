@@ -144,7 +144,7 @@ def no_denoiser(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 def test_without_a_denoiser_the_bench_says_what_to_install(bench_of: BenchOf, tmp_path: Path) -> None:
     bench = bench_of(rc.Shot.load(bench_shots.write_panels_shot(tmp_path)))
     assert not bench.denoises
-    assert "pip install realcam[denoise] brings it" in bench.why_no_denoiser
+    assert "install it with pip install realcam[denoise]" in bench.why_no_denoiser
     with pytest.raises(rc.InputError, match="pip install realcam"):
         bench.set_denoising(True)
     bench.set_denoising(False)

@@ -180,7 +180,7 @@ TEST_CASE("clear semi-diameters that a file leaves out are those of real rays") 
     const std::string bare = replaced(replaced(kCodeV, "  CIR 8.0\n", ""), "; CIR 8.0", "");
     const Reading reading = read(bare, "a.seq");
     REQUIRE(reading.error == "");
-    CHECK(reading.warns_of("clear semi-diameter of surfaces 2, 3"));
+    CHECK(reading.warns_of("clear semi-diameter for surfaces 2, 3"));
     // Wider than the axial beam of 5 mm, by the field's chief ray: the stop lies some 9 mm behind the first surface.
     CHECK(reading.lens.surfaces[0].clear_semi_diameter > 5.3);
     CHECK(reading.lens.surfaces[0].clear_semi_diameter < 6.3);
@@ -219,7 +219,7 @@ TEST_CASE("pbrt's tables in both conventions") {
         REQUIRE(reading.error == "");
         CHECK(focal_length(reading.lens) == about(50.3582, 1e-6));  // published first order
         CHECK(reading.lens.title == "D-GAUSS");
-        CHECK(reading.warns_of(before ? "in front of" : "behind"));
+        CHECK(reading.warns_of(before ? "those before" : "those after"));
     }
     CHECK(read("1 2 3\n", "a.dat").says("a.dat:1: surface 1: has 3 columns"));
     CHECK(read("", "a.dat").says("has no rows"));

@@ -164,6 +164,6 @@ TEST_CASE("superconics are the same after a lens file, and those that cannot be 
     surface.form.forbes.reset();
     surface.form.base = BaseForm::toroid;
     refused(surface, "depart from a conic of revolution");
-    refused(superconic(1 / 12.0, 0, {2, 0, 8, 0, -5}), "by which they are traced");
+    refused(superconic(1 / 12.0, 0, {2, 0, 8, 0, -5}), "with which they are traced");
     refused(superconic(1 / 40.0, 0, std::vector<double>(21, 0.1)), "has more superconic terms than 20");
 }
