@@ -103,7 +103,8 @@ def test_ctrl_c_writes_the_picture(program: list[str], tmp_path: Path) -> None:
     words = ["render", scene, "--resolution", "96x64", "--noise-codes", "0.001", "--device", "cpu"]
     code, said = interrupted([*program, *words, *(f"-o{file}" for file in files)], signal.SIGINT)
     assert code == 130
-    assert "it was stopped; the noise is " in said
+    # On a busy machine the signal may come before the noise can be measured.
+    assert "it was stopped; the noise is " in said or "it was stopped; too few samples" in said
     assert said.endswith("realcam: stopped; the picture has the samples that were taken until then\n")
     for file in files:
         assert read(file).shape[:2] == (64, 96)
