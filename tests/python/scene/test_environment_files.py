@@ -326,7 +326,7 @@ def test_a_layer_is_chosen_where_several_could_be_the_light(tmp_path: Path) -> N
     assert triangle.with_environment(path, layer="right") == triangle.with_environment(SKY)
     with pytest.raises(rc.ImageFileError, match=r'no layer "up"; its layers are "left", "right"'):
         rc.read_environment(path, layer="up")
-    with pytest.raises(rc.InputError, match="no file"):
+    with pytest.raises(rc.InputError, match="layer requires that the environment is an OpenEXR file"):
         triangle.with_environment(1, layer="right")
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     text = 'format = 1\nscene = "a.obj"\nexposure_time_s = 1\nenvironment_layer = "right"\n'
