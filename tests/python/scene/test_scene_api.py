@@ -47,7 +47,7 @@ def test_arrays_of_many_types_lists_and_strided_arrays() -> None:
         ({"triangles": [[0, 1, 3]]}, "vertex 3"),
         ({"triangles": [[0, 1, 2**40]]}, "vertex 1099511627776"),
         ({"triangles": [[0.5, 1, 2]]}, "integers"),
-        ({"triangles": [[0, 0, 0]]}, "without area"),
+        ({"triangles": [[0, 0, 0]]}, "zero area"),
         ({"vertices_m": [[math.nan, 0, 0], [1, 0, 0], [0, 1, 0]]}, "vertex 0.*finite"),
         ({"normals": np.zeros((2, 3))}, "2 normals for 3 vertices"),
         ({"normals": np.zeros((3, 2))}, r"normals .*\(N, 3\)"),

@@ -143,7 +143,7 @@ def test_pixels_of_another_size_are_told() -> None:
         sensor.expose(film_of(np.ones((4, 4)), pitch_um=37.5, iso=iso))
     assert sensor.film().resolution == (4944, 3284)
     assert sensor.film().width_mm == pytest.approx(4.944 * 4.78)
-    with pytest.raises(rc.InputError, match="pixels of any size"):
+    with pytest.raises(rc.InputError, match="has no pixel pitch of its own"):
         rc.Sensor.load("ideal").film()
 
 
