@@ -150,7 +150,7 @@ TELECENTRIC = rc.Lens(
         (lambda: LENS.wavefront(0.0, remove="focus", pupil=[[0, 0]]), "too few, or too close together"),
         (lambda: LENS.wavefront(0.0, pupil=np.zeros((0, 2))), r"pupil must be an array of shape \(N, 2\)"),
         (lambda: LENS.wavefront(0.0, pupil=[[50, 0]]), "units of the stop's radius"),
-        (lambda: LENS.wavefront(0.0, pattern="rings", samples=4).map_waves(), 'the pattern "grid" only'),
+        (lambda: LENS.wavefront(0.0, pattern="rings", samples=4).map_waves(), 'a map requires the pattern "grid"'),
         (lambda: LENS.wavefront(0.0, film_distance_mm=-30.0), "no reference sphere"),
         (lambda: LENS.seidel(90.0), "less than 90 deg"),
         (lambda: PLATE.seidel(3.0), "afocal"),

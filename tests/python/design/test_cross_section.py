@@ -245,7 +245,7 @@ def test_what_makes_no_sense_is_refused() -> None:
     for options, message in (
         ({"rays_from": "sky"}, "object or film"),
         ({"rays": -1}, "0 or more"),
-        ({"rays_from": "film", "fields_deg": [1]}, "rays from the object"),
+        ({"rays_from": "film", "fields_deg": [1]}, 'fields_deg requires rays_from="object"'),
         ({"fields_deg": [60]}, "60"),
         ({"plane": "xy"}, "expected yz or xz"),
     ):

@@ -258,7 +258,7 @@ def test_a_function_of_rays_has_the_gradient_of_its_central_differences() -> Non
         (lambda lens: lens.gradient("spot_mm", [rc.Variable("colour", 0)]), 'unknown quantity "colour"'),
         (lambda lens: lens.gradient("f_number", [rc.Variable.radius(7)]), "there is no surface 7; the lens has 3"),
         (lambda lens: lens.gradient("spot_mm", [rc.Variable.radius(2)]), "only blocks light"),
-        (lambda lens: lens.gradient("spot_mm", [rc.Variable.radius(0)] * 2), "named twice"),
+        (lambda lens: lens.gradient("spot_mm", [rc.Variable.radius(0)] * 2), "variables must be distinct"),
         (lambda lens: lens.gradient("mtf_tangential", [rc.Variable.radius(0)]), "needs a frequency_per_mm"),
         (
             lambda lens: lens.gradient("distortion_percent", [rc.Variable.radius(0)]),

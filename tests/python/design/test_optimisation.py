@@ -99,7 +99,7 @@ FRONT = [rc.Variable.radius(0)]
         ([rc.Variable.conic(1)], {}, "is a plane: its conic has no effect"),
         ([rc.Variable.thickness(6)], {}, "last surface has no thickness"),
         ([rc.Variable.thickness(0, lower_mm=50)], {}, "the thickness of surface 1 is .* does not lie between"),
-        ([*FRONT, *FRONT], {}, "named twice"),
+        ([*FRONT, *FRONT], {}, "variables must be distinct"),
         (FRONT, {"fields_deg": ()}, "at least one field"),
         (FRONT, {"field_weights": (1, 2)}, "as many"),
         (FRONT, {"field_weights": (-1,)}, "positive"),
