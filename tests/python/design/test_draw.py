@@ -331,7 +331,7 @@ def test_the_command_takes_options(tmp_path: Path, options: list[str]) -> None:
         (["--theme", "pink"], 'theme "pink" is unknown; expected light or dark'),
         (["--states", "all"], "expected one, rows or ghost"),
         (["--fields", "0,x"], '--fields: "x" is not a number'),
-        (["--states", "ghost"], "names no nearest focus"),
+        (["--states", "ghost"], "does not specify a nearest focus"),
         (["--states", "rows", "--focus", "2"], "cannot be combined with it"),
         (["--wavelengths", "5"], "between 100 and 20000 nm"),
     ],

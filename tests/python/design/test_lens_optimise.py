@@ -62,7 +62,7 @@ def test_an_interruption_writes_the_best_lens_and_ends_in_130(
         (["--vary", "radius:0"], "there is no surface 0; the lens has 7"),
         (["--vary", "aspheric:2"], "conic:2 or aspheric:2:4"),
         (["--vary", "conic:2"], "surface 2 is a plane"),
-        (["--glasses", "--global", "9"], "cannot go together"),
+        (["--glasses", "--global", "9"], "cannot be combined"),
         (["--global", "9"], "finite bounds"),
     ],
 )
