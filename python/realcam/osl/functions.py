@@ -70,7 +70,7 @@ int pass_plane(float gap, float rim, output point at, vector way)
 
 STOP = """\
 // Area of a diaphragm opening over the square of its apothem: n arcs that touch the unit circle, within a circle of
-radius // `rim`.
+// radius `rim`.
 float opening_area(float blades, float rounding, float rim)
 {
     float half = M_PI / blades;
@@ -109,7 +109,7 @@ float apothem_of(float blades, float rounding, float radius, float rim)
 }
 
 // Returns 1 if a ray passes the diaphragm. Its blades are arcs or straight lines at the apothem's distance from the
-axis; // corner: radius of the circle through the opening's corners.
+// axis; corner: radius of the circle through the opening's corners.
 int pass_stop(float gap, float corner, float blades, float rounding, float rotation, float apothem,
               output point at, vector way)
 {
@@ -126,7 +126,7 @@ int pass_stop(float gap, float corner, float blades, float rounding, float rotat
 
 ASPHERE = """\
 // Sag of surface {number} in mm, and its first and second derivative (slope, bow) by t. t is linear in the squared
-distance // from the axis: -1 on the axis, 1 at the rim.
+// distance from the axis: -1 on the axis, 1 at the rim.
 void shape_{number}(float t, output float height, output float slope, output float bow)
 {{
 {powers}    height = {height};
@@ -181,7 +181,7 @@ STEP = """\
 
 PUPIL = """\
 // Interpolates the pupil table: the ellipse of direction cosines (l, m) in which light reaches a film point on the x
-axis, // with its centre `middle` in l, its half axes, and the central obstruction `hole` relative to the half axes.
+// axis, with its centre `middle` in l, its half axes, and the central obstruction `hole` relative to the half axes.
 // share: film radius relative to the largest one of the table. open: radius of the stop's corners relative to the fully
 // open stop.
 void find_pupil(float share, float focus, float open, float colour, output float middle, output float half_l,
