@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-# What stands before the surfaces, and a line for each surface: curvature | distance | glass | semi-diameter | the rest.
+# For each file: the lines before the surfaces, and a row for each surface:
+# curvature | distance | glass | semi-diameter | further operands.
 ZEMAX: dict[str, tuple[str, str]] = {
     # Two mirrors without aberrations of the third order: Handbook of Optics, 2nd edition, vol. II, chapter 18.
     "two-mirrors.zmx": (

@@ -27,7 +27,7 @@ wants_executable = pytest.mark.skipif(not EXECUTABLE, reason="the executable is 
 
 @cache
 def loads_cuda_plugins() -> bool:
-    """Whether the CUDA backend of this build would be a plug-in; False where it is compiled in."""
+    """True if this build loads its CUDA backend as a plug-in; False if the backend is compiled in."""
     environment = {**os.environ, "REALCAM_CUDA_PLUGIN": ""}
     done = subprocess.run([*PYTHON, "devices"], capture_output=True, text=True, env=environment)
     return "no CUDA backend" in done.stderr

@@ -247,7 +247,7 @@ def test_a_shot_file_has_keys(folder: Path) -> None:
         Key(2, focus_m=math.inf, iso=400),
     )
     assert shot.shake == rc.Shake(rms_deg=0.1, seed=3)
-    # As the shutter opens, halfway between the keys.
+    # The shutter opens halfway between the two keys.
     assert shot.camera.lens.focus_distance_m == pytest.approx(2, rel=1e-9)
     assert shot.camera.iso == 400
     assert pickle.loads(pickle.dumps(shot)).keys == shot.keys
@@ -297,7 +297,7 @@ def test_each_lens_of_a_film_tells_what_it_cannot_show(folder: Path) -> None:
 
 
 def test_an_f_number_of_the_file_is_that_of_all_focal_lengths(folder: Path) -> None:
-    """Also where the lens does not open as far at the position that it had before its keys."""
+    """This holds even if the lens cannot open to that f-number at the zoom position it had before its keys apply."""
     lens = (Path(__file__).parents[3] / "lenses" / "zoom-25-50mm.toml").read_text()
     slow = lens.replace("stop_semi_diameter_mm = 8.31038", "stop_semi_diameter_mm = 4.15519")
     assert slow != lens

@@ -243,8 +243,9 @@ def test_without_data_it_changes_nothing(name: str) -> None:
 
 
 def test_noise_where_colours_stay_in_a_pixel() -> None:
-    """What wavelengths add to the noise of RGB, as a share of the picture: one wavelength a sample alone adds 0.18.
-    Samples that count for three leave the part of each channel that three wavelengths miss, and the borders of pixels.
+    """Noise that wavelength sampling adds to RGB, relative to the picture: 0.18 with a single wavelength per sample.
+    With three wavelengths per sample, the remaining noise comes from the part of each channel that they miss and from
+    the borders of pixels.
     """
     lens = rc.Lens.load("double-gauss-100mm").focused(2.0)
     camera = rc.Camera(lens, film=rc.Film(36, 24, (48, 32)), exposure_time_s=1)

@@ -65,7 +65,7 @@ def disparity_of_rays_mm(lens: rc.Lens, distance_m: float) -> float:
 def test_disparity_over_defocus_is_that_of_ray_centroids(distance_m: float, device: str) -> None:
     seen_by = camera()
     wanted = disparity_of_rays_mm(seen_by.lens, distance_m)
-    # What is farther than the focus has the light of the right half on the right.
+    # For an object beyond the focus distance, the image in the layer dual_pixel_right lies further to the right.
     assert (wanted > 0) == (distance_m > FOCUS_M)
     found = disparity_mm(photograph(lamp(distance_m), seen_by, spp=256, device=device))
     # 1e5 samples, of an image some tenths of a millimetre wide, leave 1e-3 mm or less of 0.2 mm.
@@ -148,7 +148,7 @@ def test_what_has_no_halves_says_so(changes: dict[str, Any], model: str, message
 def wall(distance_m: float, period_m: float = 0.02) -> rc.Scene:
     """Upright stripes, white and black, before the camera."""
     edges = np.arange(-0.5, 0.5, period_m)
-    # Not periodic: a match one period off would be as good.
+    # The stripes are not periodic; otherwise a match one period off would be equally good.
     halves = period_m * (0.15 + 0.2 * (np.arange(len(edges)) * 7 % 11) / 11)
     stripes = [scenes.quad((x + w, 0, -distance_m), w, 1, emission=500) for x, w in zip(edges, halves, strict=True)]
     return scenes.scene_of(*stripes)

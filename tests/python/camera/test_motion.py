@@ -1,4 +1,4 @@
-"""What moves while the shutter is open: streaks against closed forms, and motion against the mean of many stills."""
+"""Motion while the shutter is open: streaks against closed forms, and motion against the mean of many stills."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def test_a_fan_turns_at_an_even_pace_along_arcs(device: str) -> None:
     y, x = np.mgrid[31.5:-32.5:-1, -31.5:32.5]
     radius, direction = np.hypot(x, y), np.degrees(np.arctan2(y, x))
     ring = np.abs(radius - 20) < 4
-    # At radius r the blade of width 3 covers an angle of 3 / r, of 120 degrees that it passes through.
+    # At radius r the blade of width 3 subtends an angle of 3 / r and sweeps 120 degrees.
     still = pixels_of(NOTHING.with_instance(lit_area(2), shifted(z=z)), cam, device)
     inside = ring & (direction > 10) & (direction < 110)
     expected = 2 * np.arcsin(1.5 / radius[inside]) / angle
@@ -99,7 +99,7 @@ def test_a_fan_turns_at_an_even_pace_along_arcs(device: str) -> None:
     for low in range(10, 110, 20):
         part = inside & (direction > low) & (direction < low + 20)
         share = 2 * np.arcsin(1.5 / radius[part]) / angle
-        # Noise of a part: some 90 pixels of 1024 samples of which 7% are lit, 1.2%.
+        # Noise of a sector: about 90 pixels of 1024 samples, 7% on the blade, give 1.2%.
         assert (picture / still)[part].sum() == pytest.approx(share.sum(), rel=0.05), low
     assert picture[ring & ((direction > 130) | (direction < -12))].max() == 0
 

@@ -111,7 +111,7 @@ def test_what_is_no_number_of_bounces_is_refused() -> None:
 
 
 def test_all_frames_of_a_film_have_the_same_bounces() -> None:
-    """Also where the effects are named."""
+    """The planned max_bounces is shared by all frames even if the effects are given explicitly."""
     scene = box(3, 6 * [rc.Material(diffuse=(0.5,) * 3, emission=(1.0,) * 3)])
     film = rc.Shot(scene, camera(), rc.RenderSettings(effects=(), spp=1)).frames([1, 2, 3], device="cpu")
     chosen = {frame.settings.max_bounces for frame in film.values()}

@@ -52,7 +52,7 @@ def test_a_point_on_a_pixels_ray_shows_in_the_pixel() -> None:
                 assert (status[~lit] == rc.ProjectionStatus.BAD_INPUT).all()
                 worst[through] = max(worst[through], float(np.abs(seen[lit] - pixels[lit]).max()))
                 tried += int(lit.sum())
-    # What is left is the rounding of coordinates of metres: 1e-16 m over a pixel of 1e-6 m or more.
+    # The remaining error is the rounding of coordinates in metres: 1e-16 m over a pixel of 1e-6 m or more.
     for through, error in worst.items():
         hold(Measurement("Computer vision", f"`project` of a point on the line of `ray`, through {through}",
                          f"every fourth bundled lens and a fisheye, some stopped down, of {tried} pixels and distances",
@@ -68,7 +68,7 @@ def test_chief_rays_are_those_of_the_analysis(name: str) -> None:
     for angle in np.linspace(1, widest, 7):
         chief = camera.lens.spot(angle, object_distance_m=np.inf).chief_ray_mm
         radians = np.radians(angle)
-        # As far away as the sun, so that the point lies in one direction from all of the lens.
+        # The point is as far away as the sun, so that its direction is the same from every point of the lens.
         point = 1.5e11 * np.array([np.sin(radians), 0, -np.cos(radians)])
         (pixel,) = camera.project([point], through="chief")
         # The table of lines is interpolated by cubics between 128 radii.

@@ -16,7 +16,7 @@ def camera(model: str = "full") -> rc.Camera:
 
 
 def light(device: str, model: str = "full", **settings: object) -> rc.Image:
-    """Of a sky that is the same everywhere: what differs is what the lens lets pass."""
+    """Picture of a uniform sky, so that pixels differ only by the transmitted light of the lens."""
     return rc.render(scenes.sky(), camera(model), effects=(), spp=256, device=device, **settings)  # type: ignore[arg-type]
 
 

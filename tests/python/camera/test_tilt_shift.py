@@ -112,8 +112,8 @@ def test_the_irradiance_of_a_tilted_lens_is_the_integral_over_its_pupil(height):
     film = Film(1e-3, 1e-3, (1, 1), shift_mm=(5, height))
     rays = Camera(lens, film=film).generate_rays(spp=1 << 16)
     at = np.array([-5, -height, lens.film_position_mm])  # the film's axes point against the picture's
-    # 700 x 700 cells, of which those at the rim of a region of 0.4 across are counted or not: 0.2%. As much of the
-    # samples' own noise, of which some 5% do not pass.
+    # A grid of 700 x 700 rays, in which rays at the rim of a region 0.4 wide are counted or not: 0.2%. The noise of the
+    # samples, about 5% blocked, is as large.
     assert rays.weights.mean() == pytest.approx(passing_area(lens, at, np.eye(3)), rel=5e-3)
 
 

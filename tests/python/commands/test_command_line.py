@@ -24,7 +24,7 @@ from ..programs import PROGRAM
 
 BENCHMARKS = Path(rc.__file__).resolve().parents[2] / "benchmarks"
 wants_benchmarks = pytest.mark.skipif(not BENCHMARKS.is_dir(), reason="a wheel comes without the benchmarks")
-# As the script that pip installs calls it.
+# The same call as in the script that pip installs.
 PYTHON_COMMAND = [sys.executable, "-c", "from realcam_command.main import main; main()"]
 
 TREE = typer.main.get_command(cli.app)
@@ -162,7 +162,7 @@ def test_mistyped_words(words: str, meant: str, python: Said) -> None:
 @pictures
 @pytest.mark.parametrize("name", IN_CPP)
 def test_help_has_one_form(name: str, python: Said, cpp: Said) -> None:
-    """What Python would print of a command in C++ is what C++ prints, but for groups of options."""
+    """For a command in C++, the help that Python would print is the help that C++ prints, but for option groups."""
     text = python(f"{name} --help")[1]
     printed = cpp(f"{name} --help")[1].partition("\nExamples:\n")[0]
 
@@ -231,7 +231,7 @@ def test_a_shell_completes_the_command_that_pip_installs() -> None:
 
 
 def test_bench_says_where_the_benchmarks_are(tmp_path: Path, python: Said, monkeypatch: pytest.MonkeyPatch) -> None:
-    # As installed: the package alone.
+    # An installed package lies outside of the repository.
     monkeypatch.setattr("realcam.cli.bench.__file__", str(tmp_path / "site-packages/realcam/cli/bench.py"))
     errors = refusal(python("bench frame"))
     assert "source repository" in errors and "./run bench" in errors
@@ -242,7 +242,7 @@ def test_bench_says_where_the_benchmarks_are(tmp_path: Path, python: Said, monke
     "words, meant",
     [
         ("render scene.glb -o a.png --exposur-time=1/50", 'option --exposur-time (did you mean "--exposure-time"'),
-        # Also where something else is missing.
+        # Unknown options are reported even if a required one is missing, too.
         ("render scene.glb --outptu a.png", 'option --outptu (did you mean "--output"'),
         ("render --f-numbr 8", '(did you mean "--f-number"'),
         ("render scene.glb", "--output is required (realcam render --help lists the options)"),
@@ -444,7 +444,7 @@ def test_sensors_as_json(python: Said) -> None:
 
 
 def test_all_commands_that_write_can_be_quiet() -> None:
-    """Of C++ `render` can, which has a test of its own."""
+    """The C++ commands are left out here; `render --quiet` in C++ has a test of its own."""
     for name in sorted(commands()):
         command: Any = TREE
         for word in name.split():

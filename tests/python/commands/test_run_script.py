@@ -18,7 +18,7 @@ def run(*command: object) -> str:
 
 
 def forget_what_was_moved(folder: Path) -> str:
-    """What ./run does before it sets up; `help` only defines its functions. Returns what it says."""
+    """Runs the clean-up that ./run does before it sets up (`help` only defines its functions). Returns the output."""
     return run("bash", "-c", 'source "$0" help && forget_what_was_moved build/dev', folder / "run")
 
 

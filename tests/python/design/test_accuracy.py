@@ -1,4 +1,4 @@
-"""What accuracy costs: the levels, their errors, and what is said of them."""
+"""Cost of the accuracy levels: the levels, their errors, and how they are reported."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def test_every_plot_has_labels_and_units(computed: dict[str, object], number: in
     assert abs(sum(page) - sum(ink)) > 1.8, "the text stands out from the page"
 
 
-# Of each plot: the number of the axes, the number of the line, x (0) or y (1), and what the line shows there.
+# For each plot: index of the axes, index of the line, coordinate (0: x, 1: y), and the values that the line shows.
 LINES: dict[str, tuple[int, int, int, Callable[..., np.ndarray]]] = {
     "ray-fan": (1, 2, 1, lambda fan: 1e3 * fan.tangential_mm[1, 2]),
     "spot": (2, 0, 1, lambda spots: 1e3 * spots.points_mm[0, 2, 0, :, 1]),
@@ -97,7 +97,7 @@ def test_colours_and_surfaces_are_named(computed: dict[str, object]) -> None:
         legends = [legend for axes in analysis.plot_figure(kind, computed[kind]).axes if (legend := axes.get_legend())]
         assert "486.1 nm" in [text.get_text() for legend in legends for text in legend.get_texts()], kind
     ticks = analysis.plot_figure("seidel", computed["seidel"]).axes[0].get_xticklabels()
-    # As `lens info` and lens files number them.
+    # Surface numbers are those of `lens info` and of lens files.
     assert [tick.get_text() for tick in ticks] == [*map(str, range(1, 1 + len(LENS.surfaces))), "sum"]
     assert "0°" in analysis.plot_figure("zernike", computed["zernike"]).axes[0].get_title()
 
@@ -267,7 +267,7 @@ def test_zernike_orders_and_norm(order: str, table: list[tuple[int, int]]) -> No
 
 
 def test_zernike_polynomials_have_their_names() -> None:
-    """As J. C. Wyant and K. Creath list them (Applied Optics and Optical Engineering XI, 1992, table III)."""
+    """Names as listed by J. C. Wyant and K. Creath (Applied Optics and Optical Engineering XI, 1992, table III)."""
     fit = analysis.zernike_fit(LENS, order="fringe", terms=25)
     names = dict(zip(fit.indices.tolist(), fit.names, strict=True))
     assert names[4] == "defocus"
@@ -320,7 +320,8 @@ def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest
         return made
 
     monkeypatch.setattr(ReportPlots, "pages", pages_of)
-    # What the fisheye's curves are is no matter here. realcam.analysis.mtf is the function.
+    # The values of the fisheye's curves do not matter here. import_module, because the attribute realcam.analysis.mtf
+    # is the function, not the module.
     monkeypatch.setattr(import_module("realcam.analysis.mtf"), "_MAX_DOUBLINGS", 2)
     analysis.save_report(rc.Lens.load(name), tmp_path / "r.html", wavelengths_nm=[546.0], theme="dark")
     text = (tmp_path / "r.html").read_text(encoding="utf-8")

@@ -178,7 +178,7 @@ def test_a_ray_aimed_at_the_edge_of_the_stop_passes_it_when_it_is_traced(name: s
     again = lens.trace(aimed.origins_mm[ok], aimed.directions[ok], start="scene")
     assert (again.status == rc.RayStatus.OK).all()
     at_stop = lens.trace(aimed.origins_mm[ok], aimed.directions[ok], start="scene", surface_count=lens.stop_index + 1)
-    # As near to the edge as it says: aimed at 5e-11 further in, within half of that.
+    # Rays are aimed 5e-11 inside the stop's edge, and land within half of that.
     share = np.hypot(*at_stop.origins_mm[:, :2].T) / lens.stop_semi_diameter_mm
     assert share.min(initial=1) > 1 - 1e-10
     assert share.max(initial=0) <= 1
@@ -198,10 +198,10 @@ def test_the_plane_in_focus_is_the_object_where_none_is_given() -> None:
     places = [[0.3, 0.4], [0.0, 0.9]]
     expected = near.aim(places, 5.0, object_distance_m=to_object).directions
     np.testing.assert_allclose(near.aim(places, 5.0).directions, expected, atol=1e-12)
-    # The film is where the axial spot of the plane in focus is smallest; focusing ends within 1e-9 of the distance.
+    # The film is at the smallest axial spot of the plane in focus; focusing converges to 1e-9 of the distance.
     assert near.best_focus_mm() == pytest.approx(near.film_distance_mm, rel=1e-9)
     assert near.best_focus_mm(math.inf) == pytest.approx(LENS.film_distance_mm, rel=1e-9)
-    # Of a lens focused at infinity that is infinity, also past 90 degrees.
+    # For a lens focused at infinity the plane in focus is at infinity, even for field angles beyond 90 degrees.
     fisheye = rc.Lens.load("fisheye-6mm-220deg")
     assert fisheye.spot(100.0).rms_radius_mm == fisheye.spot(100.0, object_distance_m=math.inf).rms_radius_mm
     with pytest.raises(rc.InputError, match="expected less than 90 deg for the plane in focus"):

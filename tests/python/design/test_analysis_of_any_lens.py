@@ -63,13 +63,13 @@ def turned(lens: rc.Lens) -> rc.Lens:
 
 
 def test_light_in_the_middle_is_pi_sine_squared() -> None:
-    """In both planes: of an anamorphic lens the marginal rays have other angles in x and in y, and what passes is an
-    ellipse of direction cosines."""
+    """Holds in both meridians: an anamorphic lens has different marginal-ray angles in x and in y, and the transmitted
+    rays fill an ellipse of direction cosines."""
     for lens in (LENS, LENS.stopped_down(5.6), anamorphic(), anamorphic().stopped_down(8)):
         pupil = lens.film_pupil()
         half = 0.5 * np.ptp(pupil.outline.reshape(-1, 2), axis=0)
         assert pupil.irradiance == pytest.approx(math.pi * half[0] * half[1], rel=1e-3)
-        # And that by the f-number, but for the film's distance from the focus and spherical aberration.
+        # It also agrees with the f-number, except for the film's defocus and for spherical aberration.
         f_number = lens.first_order().f_number
         assert pupil.irradiance == pytest.approx(math.pi / (4 * f_number**2), rel=0.05)
 

@@ -146,9 +146,10 @@ def test_gradients_are_central_differences_in_fifty_digits(object_m: float) -> N
 
 
 def focal_length_and_f_number(of: dict[str, Any], near: rc.AimedRays) -> tuple[Any, Any]:
-    """Of both meridians together, about the ray from the middle of the film to that of the stop, which is looked for
-    from a ray near to it. The determinants of how directions behind the lens, and places on the stop, change with the
-    place of parallel rays in front of it, by differences."""
+    """Focal length and f-number of both meridians together, about the ray from the film centre to the stop centre,
+    which is found by iteration from the nearby ray `near`. They follow from the determinants of two matrices: the
+    derivatives of the direction behind the lens, and of the point on the stop, by the position of parallel rays in
+    front of the lens. The derivatives are finite differences."""
     h, faces = mpf(10) ** -18, faces_of(of)
     at, d = [mpf(v) for v in near.origins_mm[0]], unit([mpf(v) for v in near.directions[0]])
 
@@ -213,7 +214,7 @@ def test_a_length_is_a_sum() -> None:
 
 
 def test_values_are_those_of_the_analyses() -> None:
-    """Of lenses whose axis turns and whose film is tilted, too."""
+    """The lenses include tilted axes and tilted films."""
     some = [rc.Variable.radius(0)]
     leaning = rc.Lens.load("double-gauss-50mm").focused(1.5).stopped_down(4).tilted(x_deg=4)
     for lens in (tilted_anamorphic(), leaning):
@@ -222,7 +223,7 @@ def test_values_are_those_of_the_analyses() -> None:
             assert lens.gradient("spot_mm", some, **named).value == pytest.approx(spot.rms_radius_mm, rel=1e-9)
             height = lens.gradient("chief_ray_height_mm", some, **named).value
             assert height == pytest.approx(spot.chief_ray_mm[1], rel=1e-9, abs=1e-9)
-            # Of exit pupils that are found by differences of rays.
+            # The exit pupils are found by finite differences of rays, hence the wider tolerance.
             waves = lens.gradient("wavefront_waves", some, **named).value
             assert waves == pytest.approx(wavefront.rms_waves, rel=1e-6)
 

@@ -11,7 +11,7 @@ TRIPLET = rc.Lens.load("cooke-triplet-50mm")
 
 
 def thin_lens(n: float, c1: float, c2: float) -> rc.Lens:
-    """Of f = 100 mm at f/20, the stop at its front."""
+    """Thin lens of f = 100 mm at f/20, the stop at its front."""
     return rc.Lens(
         surfaces=[
             rc.Stop(clear_semi_diameter_mm=2.5),
@@ -41,7 +41,7 @@ def test_a_thin_lens_bends_to_the_least_spherical_aberration(n: float) -> None:
 
 
 def plano_convex(conic: float) -> rc.Lens:
-    """Of index 1.6, its plane face to the light."""
+    """Plano-convex lens of index 1.6, its plane face towards the light."""
     return rc.Lens(
         surfaces=[
             rc.Stop(clear_semi_diameter_mm=10, thickness_mm=1),

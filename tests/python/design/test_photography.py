@@ -65,7 +65,7 @@ def test_infinity_is_sharp_from_the_hyperfocal_distance_on() -> None:
     dof = depth_of_field(thin_lens().focused(30), 0.03)
     data = thin_lens().first_order()
     hyperfocal_mm = data.effective_focal_length_mm**2 / (data.f_number * 0.03) + data.effective_focal_length_mm
-    # And the film stands a focal length behind the lens.
+    # Distances count from the film, which is one focal length behind the lens.
     assert dof.formula_hyperfocal_m == pytest.approx((hyperfocal_mm + 100) / 1000, abs=1e-3)
     assert dof.real_hyperfocal_m == pytest.approx(dof.formula_hyperfocal_m, rel=5e-3)
     assert dof.real.far_m == dof.formula.far_m == math.inf
@@ -86,7 +86,7 @@ def test_equation_8_is_the_exact_depth_less_one_factor() -> None:
 
 
 def test_blur_of_a_defocused_lens_is_its_disc() -> None:
-    """Of an even disc the diameter is sqrt(8) times the RMS radius: here A |s'' - s'| / s'' by similar triangles."""
+    """A uniform disc's diameter is sqrt(8) times its RMS radius. Here it is A |s'' - s'| / s'' by similar triangles."""
     lens = thin_lens()
     wanted = 5.0 * 100 / 10_000  # stop of 5 mm; an object at 10 m is imaged f^2 / (s - f) behind the film
     assert blur_diameter_mm(lens, 10.0) == pytest.approx(wanted, rel=3e-3)

@@ -172,7 +172,7 @@ def test_light_is_conserved_and_described() -> None:
     assert list(frequencies) == [0, 50, 100]
     assert tangential[0] == sagittal[0] == 1
     assert 1 > tangential[1] > tangential[2] > 0
-    # What spreads the light along y takes contrast from lines across y: of a pinhole far off the axis, its ellipse.
+    # Blur along y lowers the contrast of lines across y: for a pinhole far off the axis, by its elliptical aperture.
     pinhole = rc.Lens(
         surfaces=[rc.Stop(clear_semi_diameter_mm=0.05), rc.Surface(clear_semi_diameter_mm=9)], film_distance_mm=500.0
     )
@@ -200,7 +200,7 @@ def test_rays_alone_are_the_spot() -> None:
 
 
 def test_a_wavefront_and_its_psf_have_one_strehl_ratio() -> None:
-    """Of a small aberration on the axis, where the brightest place is the middle, and the stop is evenly lit."""
+    """For a small aberration on the axis, where the PSF peaks at its centre and the stop is uniformly illuminated."""
     lens = rc.Lens.load("cooke-triplet-50mm").stopped_down(8)
     wavefront = lens.wavefront(object_distance_m=FAR, pattern="rings", samples=20)
     assert lens.psf(object_distance_m=FAR).strehl == pytest.approx(wavefront.strehl, abs=2e-3)

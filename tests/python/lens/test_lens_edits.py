@@ -71,7 +71,8 @@ def test_turning_round_keeps_the_focus_group_and_wants_an_image() -> None:
     first, last = lens.focus_group or (0, 0)
     count = len(lens.surfaces)
     assert lens.reversed(100.0).focus_group == (count - 1 - last, count - 1 - first)
-    # Of a negative lens, and of one whose front focus lies inside the glass, there is no image.
+    # A negative lens, and a lens whose front focus lies inside the glass, form no image behind
+    # the reversed lens.
     negative = rc.Lens(
         surfaces=[
             rc.Surface(radius_of_curvature_mm=-50, material=1.5, thickness_mm=2, clear_semi_diameter_mm=5),

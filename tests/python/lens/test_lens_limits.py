@@ -1,4 +1,4 @@
-"""Lenses that nobody can make, glasses that are none, and files that are no lens files."""
+"""Lenses that cannot be made, invalid glasses, and files that are not lens files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def lens_of(*rows: dict[str, object], **more: object) -> rc.Lens:
 
 
 def front(**more: object) -> dict[str, object]:
-    """Of radius 10 at a rim of 5: its sag is 10 - sqrt(75) = 1.3397 mm."""
+    """Front surface of radius 10 with a semi-diameter of 5: its sag is 10 - sqrt(75) = 1.3397 mm."""
     return {"radius_of_curvature_mm": 10.0, "material": 1.5, **more}
 
 
@@ -36,7 +36,7 @@ def test_faces_that_cross_inside_their_rims_are_refused_with_their_numbers() -> 
     hollow: dict[str, object] = {"radius_of_curvature_mm": -10.0, "material": 1.5, "thickness_mm": 3.0}
     with pytest.raises(rc.LensFileError, match=r"surface 3: crosses surface 4, by 0\.14 mm at 5 mm"):
         lens_of(*first, hollow, PLANE)
-    # What is rounded off printed figures is none: here 0.3 um.
+    # An overlap within the rounding of printed figures is accepted: here 0.3 um.
     lens_of(front(thickness_mm=1.3394), PLANE)
 
 

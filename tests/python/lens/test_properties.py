@@ -99,7 +99,8 @@ def test_a_lens_scaled_by_a_power_of_two_scales_its_rays(
 def spread(
     lens: rc.Lens, origins: np.ndarray, directions: np.ndarray, size: float, **how: str
 ) -> tuple[np.ndarray, ...]:
-    """What a rounding of the entering rays becomes: by how much results differ for a change of 1e-7 of the size."""
+    """Sensitivity to the rounding of the entering rays: change of the results per change of the origins (relative to
+    `size`) and directions, from steps of 1e-7. Also returns which rays pass for all steps."""
     step = 1e-7
     base = lens.trace(origins, directions, **how)
     moved, stays = np.zeros(len(origins)), base.status == 0

@@ -56,7 +56,7 @@ def load(folder: Path, name: str, text: str, **options: object) -> tuple[rc.Lens
 
 
 def zoom(operands: str) -> str:
-    """Two groups, of which the front one has the focal length of -60 mm."""
+    """A zoom lens of two groups, the front one of focal length -60 mm, in Zemax's format."""
     return zemax(
         [
             OBJECT,
@@ -80,7 +80,7 @@ def test_the_stop_of_each_configuration(tmp_path: Path) -> None:
     assert first == pytest.approx(alike.zoomed(0).first_order().f_number, rel=1e-12)
     assert second == pytest.approx(alike.zoomed(1).first_order().f_number * 5 / 6.2, rel=1e-12)
     assert second == pytest.approx(4.335, abs=5e-4)
-    # Of another surface it is a rim, of which a lens has one.
+    # For any surface but the stop, SDIA sets a rim. A lens has one rim per surface: the largest, with a warning.
     rims, told = load(tmp_path, "rims.zmx", zoom("SDIA 5 1 8.5\nSDIA 5 2 9.5\n"))
     assert rims.surfaces[4].clear_semi_diameter_mm == 9.5 and "semi-diameters" in told
 

@@ -43,7 +43,7 @@ def what_is_missing(code: str) -> str:
 
 @pytest.fixture
 def names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """What pages take for granted: a scene, a camera, a picture; and files in the current folder."""
+    """Names that the pages assume: a scene, a camera, a picture. Also creates files in the current folder."""
     render, accuracy_cost = rc.render, rc.accuracy_cost
 
     def small(camera: rc.Camera) -> rc.Camera:

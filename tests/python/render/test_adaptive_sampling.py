@@ -43,11 +43,12 @@ def test_every_tile_reaches_the_noise_and_none_gets_many_more_samples(device: st
     counts = image.layers["sample_count"]
     assert image.spp == pytest.approx(counts.mean(), abs=0.51)
     assert image.shortfall == ""
-    # What glows has the noise of the way through the lens alone.
+    # The emitter's only noise comes from sampling the lens.
     assert counts[:, : SIDE // 4].mean() < counts.mean() / 2
     mean = converged.reshape(SIDE // 16, 16, SIDE // 16, 16, 3).mean(axis=(1, 3, 4))
     noise = tiles((image.pixels - converged) ** 2) / mean
-    # Of two halves of 128 pixels each, whose noise is known within 8%; and the noise of the converged picture itself.
+    # The margin covers the noise estimate from two halves of 128 pixels each, known within 8%, and the noise of the
+    # converged picture itself.
     assert noise.max() < 1.2 * goal
     uniform = rc.render(half_noisy(), camera(), effects=(), spp=image.spp, device=device)
     # The noisy tiles have more samples than then, and errors fall at least with their square root; either is known
@@ -70,7 +71,7 @@ def test_codes_are_those_of_the_developed_picture(device: str, converged: np.nda
 
     noise = tiles((codes(image.pixels.astype(np.float64)) - codes(converged)) ** 2)
     assert 1.5 < noise.max() < 3.6
-    # What is clipped has no noise.
+    # Clipped pixels have no noise.
     white = rc.render(scenes.sky(), camera(iso=1e4 * iso), effects=(), spp="auto", device=device)
     assert white.spp == 16
 

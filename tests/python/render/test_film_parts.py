@@ -31,7 +31,7 @@ def settings(**more: object) -> rc.RenderSettings:
 
 
 def regions(width: int = 17, height: int = 9) -> list[tuple[int, int, int, int]]:
-    """Rectangles that fill the film, none of which begins where tiles of the renderer do."""
+    """Rectangles that cover the film and whose inner borders are not borders of the renderer's tiles."""
     return [
         (column, row, min(width, WIDTH - column), min(height, HEIGHT - row))
         for row in range(0, HEIGHT, height)

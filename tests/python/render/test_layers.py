@@ -187,7 +187,7 @@ def test_the_circle_of_confusion_is_the_thin_lens_formula(device: str) -> None:
 
 
 def magnification_of(of: rc.Lens) -> float:
-    """Of the plane in focus, from rays of the pinhole model: film height over object height."""
+    """Magnification in the plane in focus (film height over object height), from rays of the pinhole model."""
     taken_by = rc.Camera(of, film=rc.Film(2, 2, (2, 1)), model="pinhole")
     rays = taken_by.generate_rays(spp=4096)
     pupil = np.asarray(taken_by.entrance_pupil_position_m)
@@ -275,7 +275,7 @@ def test_where_nothing_is_met(device: str) -> None:
     assert np.isnan(layers["position_middle"]).all()
     for name in ("normal", "normal_middle", "albedo", "object_id", "material_id"):
         assert (layers[name] == 0).all(), name
-    # As of what is infinitely far: rays all over the pupil are parallel there, and as wide in the plane in focus.
+    # For a point at infinity, rays from all over the pupil are parallel, as wide in the plane in focus as the pupil.
     first = lens().first_order()
     expected = first.entrance_pupil_diameter_mm * magnification_of(lens())
     np.testing.assert_allclose(layers["circle_of_confusion_mm"], expected, rtol=2e-4)
@@ -385,7 +385,7 @@ def test_variance_scales_with_samples_and_exposure(device: str) -> None:
         return image.layers["variance"].astype(float)
 
     np.testing.assert_allclose(told(64, 0.25), told(64, 1.0) / 16, rtol=1e-6)
-    # Of 16 pixels, the variance of 64 samples is known to 3%.
+    # The variance of 64 samples, over 16 pixels, is known to 3%.
     assert told(64, 1.0).mean() / told(1024, 1.0).mean() == pytest.approx(16, rel=0.15)
     assert np.isnan(told(1, 1.0)).all()
 

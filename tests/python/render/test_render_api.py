@@ -139,7 +139,7 @@ def test_a_progress_function_ends_the_picture_at_once(
         rc.render(small_scene(), camera(2000, 1700), effects=(), spp=20000, progress=progress)  # type: ignore[arg-type]
     assert len(calls) == 1
     assert calls[0] < 0.9
-    # Nothing is left over in the backend.
+    # The backend has no leftover state.
     assert small_picture().pixels.shape == (4, 4, 3)
 
 

@@ -133,7 +133,7 @@ def test_all_that_take_pictures_have_the_same_defaults() -> None:
     live = rc.LiveView(scene, device="cpu").settings  # planning takes longer than a frame
     assert live == DEFAULTS.with_(effects=(), max_bounces=1)
     assert rc.Shot(scene, camera).settings == DEFAULTS
-    # What "auto" comes to is all that changes.
+    # Only settings that are "auto" change: to their planned values.
     planned = DEFAULTS.with_(effects=plan.effects, max_bounces=plan.max_bounces)
     assert rc.render(scene, camera, device="cpu").settings == planned
     assert rc.Session(scene, camera, device="cpu").settings == planned

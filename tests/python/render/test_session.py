@@ -1,4 +1,4 @@
-"""rc.Session: samples that are added one after the other, what begins anew and what does not, and stopping."""
+"""rc.Session: adding samples step by step, changes that start a new picture and changes that do not, and stopping."""
 
 from __future__ import annotations
 

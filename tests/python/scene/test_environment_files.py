@@ -141,7 +141,7 @@ def test_openexr_colours_in_xyz_and_in_rec_709(tmp_path: Path) -> None:
 
 
 def test_the_display_window_is_the_picture(tmp_path: Path) -> None:
-    """What the data window leaves is black, and what lies beyond is cut off, for any place of either."""
+    """Pixels outside of the data window are black, and data beyond the display window is cropped, wherever they lie."""
     for data, display in (
         ((0, 0), (0, 0, 15, 15)),
         ((0, 0), (0, -8, 15, 7)),
@@ -178,7 +178,7 @@ def test_small_negative_numbers_count_as_0_with_a_warning(tmp_path: Path) -> Non
             rc.read_environment(tmp_path / "wrong.exr")
 
 
-# Of OpenEXR's cube map: what each of the six squares shows to the right and upwards, seen from inside.
+# OpenEXR's cube map: direction of each of the six faces, then its right and up directions as seen from inside.
 FACES = [
     ((1, 0, 0), (0, 0, 1), (0, 1, 0)),
     ((-1, 0, 0), (0, 0, -1), (0, 1, 0)),
@@ -195,7 +195,7 @@ def light_in(direction: np.ndarray) -> np.ndarray:
 
 
 def directions_of(height: int, width: int) -> np.ndarray:
-    """Of realcam's environments: row 0 up, the middle column towards -z, +x to its right."""
+    """Pixel directions of realcam's environment maps: row 0 up, the middle column towards -z, +x to its right."""
     polar = np.pi * (np.arange(height) + 0.5)[:, None] / height
     azimuth = 2 * np.pi * ((np.arange(width) + 0.5) / width - 0.5)
     up = np.broadcast_to(np.cos(polar), (height, width))

@@ -103,7 +103,7 @@ def test_far_from_the_origin(size: float, device: str, backend: str) -> None:
 
 
 def test_silhouettes_lie_where_projection_puts_them(device: str, backend: str) -> None:
-    """A card's slanting edge, the card from 1 mm to 1e7 m large and as far away as it is large, or a million times."""
+    """Slanted edge of a card 0.2 m to 1e7 m away; its half-width is the distance, or 1e6 times that up to 1e9 m."""
     shift, edges = 0.0, 0
     for distance in (0.2, 3.0, 1e3, 1e7):
         for half in (distance, 1e6 * distance):

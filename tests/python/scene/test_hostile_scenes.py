@@ -89,7 +89,7 @@ def test_ctrl_c_ends_the_reading(tmp_path: Path) -> None:
             with pytest.raises(KeyboardInterrupt):
                 signal.setitimer(signal.ITIMER_REAL, share * whole)
                 rc.Scene.load(path)
-            # It asks every 0.02 s; the rest is what a busy machine may take.
+            # The reader checks for signals every 0.02 s; the remaining time allows for a busy machine.
             assert time.perf_counter() - start < share * whole + 1
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)

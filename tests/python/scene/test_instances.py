@@ -311,7 +311,7 @@ def test_an_instance_that_cannot_be_moved_is_told(which: object, place: object, 
 
 
 def places_of(scene: rc.Scene) -> dict[str, list[float]]:
-    """Where the origin of each instance is."""
+    """Position of each instance's origin."""
     return {name: list(matrix[:3, 3]) for name, matrix in scene.instances}
 
 

@@ -259,12 +259,12 @@ def test_all_techniques_see_the_same(case: str, device: str) -> None:
         error = np.sqrt((alone.var(axis=0) + other.var(axis=0)) / (len(seeds) - 1))
         lit = alone.mean(axis=0) > 1e-6 * alone.mean()
         difference = np.abs(alone.mean(axis=0) - other.mean(axis=0))
-        # Where samples of pixels meet a lamp seven times on average, once in a thousand tests they never do. What one
-        # brings follows from Poisson's law: the variance over the mean.
+        # A lamp that pixel samples hit seven times on average is missed once in a thousand tests. The light of one hit
+        # follows from Poisson statistics: the variance over the mean.
         met_once = float((alone.var(axis=0)[lit] / alone.mean(axis=0)[lit]).max()) / len(seeds)
         missed = np.where(alone.mean(axis=0) < 7 * met_once, 7 * met_once, 0)
-        # Student's t with some seven degrees of freedom, in 72 blocks: above 7 once in a thousand tests. Float32 and
-        # the unit of the sums add what is left.
+        # Student's t with some seven degrees of freedom, in 72 blocks: above 7 once in a thousand tests. The last term
+        # covers float32 and the unit of the sums.
         assert (difference <= 7 * error + missed + 1e-5 * alone.mean(axis=0).max()).all(), (
             case,
             tracing,
@@ -279,7 +279,7 @@ def test_all_techniques_see_the_same(case: str, device: str) -> None:
         ("on the axis", 0.05),
         ("a hundred", 0.1),
         ("behind an edge", 0.1),
-        # Of the lamp's pixel, a sixth of the samples meet it.
+        # A sixth of the samples of the lamp's pixel hit it.
         ("in focus", 0.1),
         ("a thin tube in focus", 0.1),
         # The wall's own noise is left.
@@ -327,7 +327,7 @@ def grid_of_lamps(lens: rc.Lens, share: float) -> rc.Scene:
 
 @pytest.mark.parametrize("share", [0.006, 1e-4, 0.3])
 def test_no_lamp_in_focus_is_missed(share: float, device: str) -> None:
-    """96 lamps smaller than a pixel in each picture, of which samples of pixels miss up to all."""
+    """96 lamps in each picture, each smaller than a pixel. Samples from the pixels may miss any or all of them."""
     lens = rc.Lens.load("machine-vision-10mm").focused(5.0)
     at = camera(lens, rc.Film(7.2, 4.8, (72, 48)), position=(0, 0, 0))
     scene = grid_of_lamps(lens, share)

@@ -122,7 +122,7 @@ def test_fractions_stay_floats() -> None:
 
 
 def panel(emission: np.ndarray | None, lit: int) -> rc.Scene:
-    """A floor under 64 small lamps of one material, of which a map lets one alone shine; or one of its own."""
+    """A floor under 64 small lamps: of one material whose map leaves one lamp lit, or with a material for it."""
     corners, faces, uvs, owners = [], [], [], []
     floor, _ = scenes.quad((0, 0, -2), 0.96, 0.64)
     corners.append(floor)

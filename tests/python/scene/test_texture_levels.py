@@ -85,7 +85,7 @@ def squares_of_triangles() -> rc.Scene:
 
 
 def test_out_of_focus_a_texture_is_blurred_by_the_lens_alone() -> None:
-    """As squares are that are triangles: by the lens, and by no footprint of its width."""
+    """Squares made of triangles are blurred alike: by the lens, and not by a ray footprint of the lens's width."""
     taken = camera("thin")
     textured, made = (
         scenes.radiance(scene, taken, spp=1024)[50:, :, 0] for scene in (floor(SQUARES), squares_of_triangles())
@@ -96,7 +96,7 @@ def test_out_of_focus_a_texture_is_blurred_by_the_lens_alone() -> None:
 
 
 def test_a_stretched_instance_has_the_levels_of_its_triangles() -> None:
-    """What a footprint is in the frame of an object that is 40 times as long there."""
+    """The ray footprint is transformed to the frame of the instance's object, stretched by 40 along one axis."""
     card = scenes.quad((0, 0, 0), 1, diffuse=1.0)
     lying = np.array([[1, 0, 0, 0], [0, 0, 1, -1], [0, -1, 0, -6], [0, 0, 0, 1.0]])
     material = rc.Material.metallic_roughness(base_color=(1, 1, 1), roughness=0.9)

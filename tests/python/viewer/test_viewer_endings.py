@@ -81,7 +81,7 @@ def test_a_plotting_process_that_is_killed_comes_again(bench: BenchPage, server:
 
 
 def test_a_plot_that_is_not_done_keeps_nobody(browser: playwright.Browser, forgetful: Server) -> None:
-    """Of a window that is closed meanwhile."""
+    """The plot belongs to a window that is closed meanwhile."""
     bench, other = BenchPage(browser, forgetful.url), BenchPage(browser, forgetful.url)
     stopped: list[int] = []
     try:
@@ -100,7 +100,7 @@ def test_a_plot_that_is_not_done_keeps_nobody(browser: playwright.Browser, forge
             assert time.monotonic() - begun < 5
             return threads(forgetful)
 
-        # A window has ten, of which the one that waits for the plot stays.
+        # A window has ten threads; the one that waits for the plot remains.
         until(answered, lambda now: now < before - 5, "the window is closed")
         for _ in range(3):
             answered()

@@ -1,4 +1,4 @@
-"""What a browser may send to the lens bench, and what it may not."""
+"""Valid and invalid messages of a browser to the lens bench."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def test_of_those_that_wait_the_newest_is_done(tasks: NewestTask) -> None:
 def test_a_task_that_fails_is_logged_and_the_next_is_done(
     tasks: NewestTask, caplog: pytest.LogCaptureFixture, error: Exception, logged: int
 ) -> None:
-    """Not one that Ctrl-C has stopped."""
+    """A task that was cancelled (Ctrl-C) is not logged."""
     failed, ended = threading.Event(), threading.Event()
 
     def fails() -> None:

@@ -75,7 +75,7 @@ def test_a_goal_beyond_the_most_samples_is_told(watched: Watched) -> None:
 
 
 def test_the_noise_that_is_told_is_the_error(watched: Watched) -> None:
-    """Against a picture of so many samples that its own noise does not count."""
+    """The reference picture has enough samples that its own noise does not count."""
     small = camera(film=rc.Film(36, 24, (60, 40)))
     reference = rc.render(watched.scene, small, effects=(), spp=4096, seed=99, max_bounces=1, device="cpu")
     truth = rc._core.develop(reference.pixels, 100).astype(float)
@@ -222,7 +222,7 @@ def test_what_a_pixel_shows(watched: Watched) -> None:
 
 
 def light_of(codes: np.ndarray) -> float:
-    """The mean of what sRGB encodes (IEC 61966-2-1), which noise leaves as it is; that of the codes it makes less."""
+    """Mean linear light of sRGB codes (IEC 61966-2-1). Noise does not change it, but lowers the mean of the codes."""
     encoded = codes / 255
     return float(np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4).mean())
 
@@ -252,7 +252,7 @@ def test_a_slow_frame_has_the_exposure_set_meanwhile(watched: Watched, monkeypat
 
 
 def test_who_asks_means_the_picture_that_was_wanted_last(watched: Watched) -> None:
-    """Not the one that is still shown: a click may come right after a move."""
+    """A query refers to the latest request, not to the picture still shown: a click may come right after a move."""
     watched.photograph(PictureRequest(camera(), noise_codes=8.0))
     for z in (6.0, 3.0, 9.0):
         watched.loop.submit(PictureRequest(camera().replace(position=(0, 1, z)), noise_codes=8.0))
@@ -328,7 +328,7 @@ def codes_per_share() -> float:
 
 
 def test_the_noise_of_parts_is_where_it_is() -> None:
-    """Of a picture whose right half is noisy: each part tells that of the mean of all its samples."""
+    """The right half of the picture is noisy. Each part reports the noise of the mean of all its samples."""
     random = np.random.default_rng(3)
     deviation = np.zeros((160, 320, 1), np.float32)
     deviation[:, 160:] = 0.1 * GREY_LX

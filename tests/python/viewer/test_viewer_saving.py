@@ -1,4 +1,4 @@
-"""What the page saves, and what it leaves alone."""
+"""Files that the page saves, and files that it must not change."""
 
 from __future__ import annotations
 
