@@ -13,7 +13,7 @@ import pytest
 from realcam import _core
 
 PYTHON = [sys.executable, "-m", "realcam"]
-# CMake builds it beside the folder of the extension; an installed package has none.
+# CMake builds the executable beside the extension's folder; an installed package has no executable.
 _BUILT = Path(_core.__file__).resolve().parents[1] / "realcam"
 EXECUTABLE = [str(_BUILT)] if _BUILT.is_file() else []
 

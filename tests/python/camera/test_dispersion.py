@@ -41,7 +41,7 @@ def film_curves(nm: np.ndarray) -> np.ndarray:
 
 
 def quiet(scene: rc.Scene, camera: rc.Camera, **settings: object) -> rc.Image:
-    """A picture with dispersion, of a lens that may have none."""
+    """A picture with dispersion. Ignores warnings, because the lens may have no dispersion."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         return rc.render(scene, camera, effects={"dispersion"}, **settings)  # type: ignore[arg-type]
@@ -87,13 +87,13 @@ class Edge:
         return np.asarray((last - self.MIDDLE - share) * PITCH_MM)
 
     def whole(self) -> np.ndarray:
-        """(800, 1): what the film has of a field that is bright everywhere: a parabola, without its noise."""
+        """(800, 1): film irradiance under a uniform field, as a fitted polynomial, so without noise."""
         sky = rc.render(scenes.sky(), self.camera, effects=(), spp=64).pixels[..., 1].astype(np.float64).mean(axis=0)
         columns = np.arange(len(sky)) - self.MIDDLE
         return np.asarray(np.polyval(np.polyfit(columns, sky, 4), columns))[:, None]
 
     def traced(self, nm: float) -> float:
-        """Mean film place of rays of a wavelength from a point of the edge, mm to the right (pictures are turned)."""
+        """Mean film coordinate of rays from a point of the edge, in mm to the right (pictures are turned)."""
         n = 64
         ring, turn = np.sqrt((np.arange(n) + 0.5) / n), np.arange(n) * 2 * np.pi / n
         r = self.lens.stop_semi_diameter_mm * ring[:, None]
@@ -120,8 +120,8 @@ def test_lateral_colour_of_a_line_is_that_of_the_trace(edge: Edge, nm: float) ->
 
 
 def test_lateral_colour_of_white_light(edge: Edge) -> None:
-    """Each channel's edge is at the mean of the places of all wavelengths, by what they are to the channel. The
-    analytic observer is right to a percent, of a spread over two pixels."""
+    """Each channel's edge is the mean of the edges of all wavelengths, weighted by the channel's response. The analytic
+    observer has an error of one percent, for a spread over two pixels."""
     place = edge.places(quiet(edge.scene, edge.camera, spp=1024, max_bounces=0))
     nm = np.arange(390.0, 741.0, 10.0)
     traced = np.array([edge.traced(float(w)) for w in nm])

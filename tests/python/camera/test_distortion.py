@@ -33,7 +33,7 @@ def listed_distortion(height: float, angle_deg: float, exit_angle_deg: float) ->
 
 
 def centroid(strip: np.ndarray, height_mm: float) -> tuple[float, float]:
-    """Mean place (along the columns, and upwards) of the light around a height on the film, mm."""
+    """Centroid (along the columns, and upwards) of the light around a height on the film, in mm."""
     rows, columns = strip.shape
     y = -(np.arange(rows) + 0.5 - rows / 2) * PITCH_MM
     near = np.abs(y - height_mm) < 1.0

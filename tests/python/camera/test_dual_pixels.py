@@ -86,7 +86,7 @@ def test_left_and_right_are_the_whole(effects: tuple[str, ...], device: str) -> 
     image = photograph(scene, seen_by, effects=effects, device=device)
     left, right = (image.layers[name].astype(float) for name in HALVES)
     assert left + right == pytest.approx(image.pixels.astype(float), rel=1e-6)
-    # A quarter of the samples of the test above; dispersion has other colours at other places, which blurs little.
+    # A quarter of the samples of the test above. Dispersion shifts colours by different amounts, which blurs little.
     assert disparity_mm(image) == pytest.approx(disparity_of_rays_mm(seen_by.lens, 2.5), rel=0.05)
     # With another layer for which samples of dispersion count in their own pixels alone, too.
     without = photograph(scene, seen_by, effects=effects, layers=("variance",), light_tracing="off", device=device)

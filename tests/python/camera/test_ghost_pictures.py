@@ -1,4 +1,4 @@
-"""Ghosts in pictures: where first order puts them, as much light as an independent sum, and none where none can be."""
+"""Ghosts in pictures: first-order positions, flux against an independent sum, and cases without any ghosts."""
 
 from __future__ import annotations
 

@@ -72,8 +72,8 @@ def test_a_streak_is_as_long_as_its_way(device: str) -> None:
     row = pixels_of(scene, cam, device)[28:36].mean(axis=0)
     row /= row[46:50].mean()
 
-    # Share of the exposure during which a place is covered, at the middles of fine parts of each pixel. It is exact
-    # to the field's falling brightness, which is 1% here, and to the noise of 8 rows of 256 samples.
+    # Share of the exposure during which a point is covered, at the centres of fine subdivisions of each pixel. Errors
+    # are the falloff of the field's brightness, 1% here, and the noise of 8 rows of 256 samples.
     place = (np.arange(96 * 64) + 0.5) / 64 - 48
     covered = np.clip(np.minimum(place + 10 + 8, 10 + 8 - place) / 16, 0, 1).reshape(96, 64).mean(axis=1)
     np.testing.assert_allclose(row, covered, atol=0.02)

@@ -129,7 +129,7 @@ def test_a_picture_shows_a_lamp_where_it_is_projected(what: str) -> None:
     camera = rc.Camera(lens, film=rc.Film(22, 16, (176, 128)), position=(2, -1, 4), look_at=(-1, 0.5, 2), up=(0, 1, 0))
     focus = lens.focus_distance_m if math.isfinite(lens.focus_distance_m) else 50.0
     shown, projected = shown_and_projected(camera, (60.3, 90.7), focus, 128)
-    # The centroid of a spot out of focus lies up to 2% of its width beside; noise is a fiftieth of a pixel.
+    # The centroid of a defocused spot is off by up to 2% of its width; the noise is a fiftieth of a pixel.
     assert shown == pytest.approx(projected, abs=0.15)
 
 

@@ -22,8 +22,8 @@ def light(device: str, model: str = "full", **settings: object) -> rc.Image:
 
 @pytest.mark.parametrize("sampling", ["rear_element", "pixel"])
 def test_no_light_is_lost_wherever_rays_are_sent(device: str, sampling: str) -> None:
-    """A sixth or more of the rays to the last surface pass: 262144 of them tell the mean to 0.5%, three times that is
-    allowed in the corner's quarter of the picture."""
+    """At least a sixth of the rays to the last surface pass: 262144 of them give the mean to 0.5%. Three times that is
+    allowed, and 3% in the corner's quarter of the picture."""
     expected, found = light(device).pixels, light(device, pupil_sampling=sampling).pixels
     assert found.mean() == pytest.approx(expected.mean(), rel=0.015)
     assert found[:16, :16].mean() == pytest.approx(expected[:16, :16].mean(), rel=0.03)

@@ -273,7 +273,7 @@ def test_mistyped_words_for_what_is_in_cpp(words: str, meant: str, cpp: Said) ->
 
 
 def render(folder: Path, *words: object, scene: str = "quad.obj") -> tuple[dict[str, Any], str]:
-    """The figures of a small picture, and what was told on the way."""
+    """Renders a small picture. Returns the JSON figures and the text on stderr."""
     (folder / "quad.obj").write_text(QUAD)
     settings = ["--resolution", "48x32", "--device", "cpu", "--effects", "none", "--json"]
     done = run("render", scene, "-o", "a.png", *settings, *words, folder=folder)

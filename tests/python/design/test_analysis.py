@@ -183,8 +183,8 @@ def test_film_points_are_the_spot_of_very_many_rays() -> None:
      ("tessar-50mm", 21.0), ("fast-50mm", 20.0), ("zoom-70-200mm", 8.0), ("wide-24mm", 38.0), ("phone-4mm", 33.0)],
 )  # fmt: skip
 def test_film_points_miss_nothing_that_passes(name: str, field: float) -> None:
-    """Against rays between the edges of the light, which real rays find one by one. Contrast tells what is missing at
-    the edge, where rays land farthest from the middle."""
+    """The reference is rays between the pupil's edges, which are searched with real rays. Contrast is sensitive to
+    light missing at the edge, whose rays land farthest from the centre."""
     lens = rc.Lens.load(name)
     bundle = lens.bundle(field, arms=512, nodes=32)
     points = lens.film_points(field, 400_000, dtype="float64").astype(float)
@@ -333,7 +333,7 @@ def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest
     assert [len(page.axes) > 4 for page in pages] == [True] * 3
     if name != "fisheye-6mm-220deg":
         return
-    # The edge of its light is too uneven for a transfer function; reasons stay in place.
+    # The edge of its pupil is too uneven for a transfer function; texts with the reason stay within their plots.
     titles = [axes.get_title() for axes in pages[1].axes]
     assert "MTF, geometric" in titles
     assert "MTF over the field, geometric" in titles

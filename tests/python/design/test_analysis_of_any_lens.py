@@ -151,7 +151,7 @@ def test_no_field_is_lost_beyond_a_small_image_circle() -> None:
 )  # fmt: skip
 @pytest.mark.slow
 def test_reports_of_lenses_that_are_not_of_revolution(name: str, tmp_path: Path) -> None:
-    """Maps over the film, and its points in place of angles; no plot is replaced by a reason."""
+    """The report has maps over the film, and film points instead of field angles; every plot is drawn."""
     lens = rc.Lens.load(name)
     analysis.save_report(lens, tmp_path / "r.html", wavelengths_nm=[587.6])
     page = (tmp_path / "r.html").read_text(encoding="utf-8")

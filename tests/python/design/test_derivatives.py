@@ -66,7 +66,7 @@ def exact_numbers(lens: rc.Lens) -> dict[str, Any]:
 
 
 class Truth(ObjectRays):
-    """The rays of one object point through given places on the stop. `near`: the same for nearly the same lens."""
+    """The rays of one object point through given points on the stop. `near`: the same for a slightly changed lens."""
 
     def __init__(
         self,

@@ -76,8 +76,8 @@ def exact_numbers(lens: rc.Lens) -> dict[str, Any]:
 
 
 class Truth(ObjectRays):
-    """The rays of one object point, which stays in its place, through given places on the stop. `near`: the same for
-    nearly the same lens."""
+    """The rays of one fixed object point through given points on the stop. `near`: the same for a slightly changed
+    lens."""
 
     def __init__(
         self, of: dict[str, Any], chief: rc.AimedRays, object_mm: float, pupil: np.ndarray, near: Truth | None = None
@@ -94,8 +94,8 @@ class Truth(ObjectRays):
         return self.contrast(unit([mpf(FILM_MM[1]), -mpf(FILM_MM[0])]))
 
     def exit_pupil_distance(self) -> Any:
-        """Rays beside the chief ray on the film, as places and directions across it, meet the stop in A q + B p: the
-        mean of -A^-1 B over both meridians."""
+        """Rays near the chief ray, with positions q and direction offsets p on the film, hit the stop at A q + B p.
+        Returns the mean of -A^-1 B over both meridians."""
         z = self.chief[2]
         x = unit(cross([mpf(0), mpf(1), mpf(0)], z))
         axes, h = (x, cross(z, x)), mpf(10) ** -18

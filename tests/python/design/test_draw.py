@@ -346,7 +346,7 @@ def test_a_mistake_is_named(tmp_path: Path, options: list[str], why: str) -> Non
 
 @pytest.mark.slow
 def test_a_drawing_takes_less_than_a_second(tmp_path: Path) -> None:
-    """The best of five, because other programs run beside the tests; a drawing takes 0.3 s of an idle core."""
+    """The best of five runs counts, because other programs may run; a drawing takes 0.3 s on an idle core."""
     seconds = []
     for _ in range(5):
         start = time.process_time()

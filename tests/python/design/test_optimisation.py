@@ -170,7 +170,7 @@ def test_lenses_that_are_not_of_revolution_have_exact_slopes_too(name: str, surf
     for refocuses in (False, True):
         targets = rc.Targets(fields_deg=(0, 5), refocuses=refocuses, operands=operands)
         assert_slopes_are_differences(lens, variables, targets, 2)
-    # The object point of a near field follows such a lens, which derivatives do not know.
+    # The object point of a near field moves with such a lens, which the derivatives do not include.
     assert not _Search(lens, variables, rc.Targets(object_distance_m=2.0), 2, None).is_exact
 
 

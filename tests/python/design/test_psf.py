@@ -29,9 +29,9 @@ def perfect(f_number: float, f_mm: float = 100.0) -> rc.Lens:
     )
 
 
-# Another program's propagation. Our wavefront is handed over on a grid of the exit pupil: places on the stop are aimed
-# at, their optical path differences and their places on the reference sphere are fitted by polynomials, whose residuals
-# are far below what matters, and these are evaluated on the grid.
+# Propagation by another program. The wavefront is handed over on a grid of the exit pupil: rays are aimed at points on
+# the stop; their optical path differences and their points on the reference sphere are fitted by polynomials, whose
+# residuals are negligible, and these are evaluated on the grid.
 
 
 def polynomials(places: np.ndarray, order: int = 22) -> np.ndarray:
@@ -41,8 +41,8 @@ def polynomials(places: np.ndarray, order: int = 22) -> np.ndarray:
 
 
 def stop_rays(lens: rc.Lens, field: float) -> tuple[np.ndarray, np.ndarray]:
-    """Direction cosines (N, 2) on the reference sphere, and of the same rays the place in the bundle before the lens
-    (whose area is the light's energy), optical path difference and place on the stop, (N, 5)."""
+    """For the same rays: direction cosines (N, 2) on the reference sphere; and the position in the bundle before the
+    lens (whose area is the light's energy), the optical path difference and the point on the stop, (N, 5)."""
     k = np.arange(2000)
     radius, angle = np.sqrt((k + 0.5) / k.size), k * math.pi * (3 - math.sqrt(5))
     pupil = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)

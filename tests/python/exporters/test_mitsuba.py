@@ -47,7 +47,7 @@ def sensor_of(mi: Any, **properties: Any) -> Any:
 
 
 def sampled(mi: Any, sensor: Any, spp: int) -> tuple[Any, np.ndarray, np.ndarray]:
-    """Rays of all pixels, the place of each in the picture (2, N) in shares of it, and the weights."""
+    """Rays of all pixels, their points in the picture (2, N) as fractions of its size, and the weights."""
     count = COLUMNS * ROWS * spp
     rng = np.random.default_rng(1)
     pixel = np.arange(count) // spp

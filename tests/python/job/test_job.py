@@ -212,7 +212,7 @@ def changed(folder: Path, **entries: object) -> None:
 
 
 def test_a_strangers_shot_is_data_or_one_error(tmp_path: Path) -> None:
-    """A pickle in its place, with the digest that job.json names, and descriptions of values that cannot be."""
+    """The file is replaced by a pickle, with the digest that job.json names, and by descriptions of invalid values."""
     folder = tmp_path / "job"
     made(folder, lamp=shot(4))
     file = folder / "shots" / "00000.npz"

@@ -61,7 +61,7 @@ def test_a_lens_turned_round_takes_the_same_rays_back(name: str) -> None:
     np.testing.assert_allclose(back.directions, -mirror * directions[passed], atol=1e-10)
     data, other = lens.first_order(), turned.first_order()
     assert other.effective_focal_length_mm == pytest.approx(data.effective_focal_length_mm, rel=1e-12)
-    # The focal points change places; distances are from the first and the last vertex.
+    # The focal points are exchanged; distances count from the first and the last vertex.
     assert other.back_focal_distance_mm == pytest.approx(-data.front_focal_distance_mm, rel=1e-9, abs=1e-9)
     assert turned.reversed(lens.film_distance_mm).surfaces == lens.surfaces
 

@@ -327,7 +327,7 @@ def lens_of(
 
 
 def test_two_makers_glasses_of_one_name(tmp_path: Path) -> None:
-    """Schott and CDGM have an F2 each: a bare name beside both catalogues would be either."""
+    """Schott and CDGM each have an F2: a bare name is ambiguous if a file lists both catalogues."""
     crown = "cdgm:H-ZK9A"
     lens = lens_of(
         [(22, 3, 9, crown), (-400, 6, 9, None), (-22, 1, 5, "schott:F2"), (20, 5.75, 5, None)],

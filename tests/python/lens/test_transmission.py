@@ -125,7 +125,7 @@ def test_light_passes_a_lens_both_ways_alike(name: str, coating: str) -> None:
 
 
 def field_of_the_film(lens: rc.Lens) -> float:
-    """Angle to the axis of the film's corner, degrees, or of the place nearest to it that gets light."""
+    """Field angle, in degrees, of the film's corner, or of the point nearest to it that receives light."""
     width, height = lens.film_mm
     while True:
         across = rc.Camera(lens, film=rc.Film(width, height)).field_of_view_deg.diagonal

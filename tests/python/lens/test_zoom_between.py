@@ -27,7 +27,7 @@ def test_the_focal_length_is_the_one_asked_for(name: str) -> None:
         there = lens.zoomed(wanted)
         assert there.first_order().effective_focal_length_mm == pytest.approx(wanted, rel=1e-9)
         assert there.zoom_positions == lens.zoom_positions
-        # Spacings stay between those of the two positions beside, which is what keeps glass apart.
+        # Spacings stay between those of the two neighbouring positions, so that glasses cannot collide.
         k = int(np.searchsorted(lens.zoom_focal_lengths_mm, wanted))
         before, after = (lens.zoomed(i) for i in (k - 1, k))
         for a, b, c in zip(before.surfaces[:-1], there.surfaces[:-1], after.surfaces[:-1], strict=True):
@@ -94,7 +94,7 @@ def test_rings_stay_as_they_are() -> None:
     there = lens.zoomed(100.0)
     assert there.focus_distance_m == pytest.approx(3, rel=1e-9)
     assert there.focused(math.inf).first_order().f_number == pytest.approx(5.6, rel=1e-6)
-    # From one place between to the next is as from a position.
+    # Zooming from one intermediate focal length to another gives the same lens as zooming from a position.
     assert there.zoomed(150.0).zoomed("70mm").surfaces == lens.zoomed("70mm").surfaces
     opened = rc.Lens.load("zoom-70-200mm").zoomed(100.0)
     assert opened.stop_semi_diameter_mm == opened.surfaces[opened.stop_index].clear_semi_diameter_mm

@@ -289,7 +289,7 @@ def test_a_forked_process_works_or_says_why_not(concurrent: bool) -> None:
 
 
 def test_a_process_forked_amid_a_render_ends_at_once() -> None:
-    """By sys.exit, which runs what waits for work under way: there is none in the child."""
+    """sys.exit in the child runs the exit handler that waits for renders; the child has no render to wait for."""
     code = """
         work = lambda: rc.render(room(), camera, effects=(), max_bounces=1, spp=10**6, device="cpu")
         thread = threading.Thread(target=work, daemon=True)

@@ -77,7 +77,7 @@ def test_codes_are_those_of_the_developed_picture(device: str, converged: np.nda
 
 
 def test_stopping_by_noise_does_not_bias_the_mean(device: str) -> None:
-    # A small lamp far out of focus, over a dark sky: few samples meet it, and a pixel that met none looks finished.
+    # A small, strongly defocused lamp over a dark sky: few samples hit it, and a pixel without a hit looks converged.
     scene = scenes.scene_of(scenes.quad((0.05, 0.02, -30), 0.02, emission=2e4)).with_environment(1.0)
     by_pixels = {"effects": (), "light_tracing": "off"}  # samples from the lamp would light all of its disc
     film = rc.Film(18, 12, (48, 32))
@@ -130,9 +130,9 @@ def test_the_noise_of_lamps_is_told(scene: rc.Scene, focus_m: float, resolution:
         spread = max(spread, float(np.sqrt(variance[pixels].mean())) / light)
     assert spread > 0
     ratio = float(np.sqrt(np.mean(np.square(told)))) / spread
-    # Independent samples change by as much as they err, and are told 2^-0.6 of it where two doublings by chance show a
-    # faster rate. Where the error falls like 1 / n, the change is sqrt(5) of it. 30 seeds with a few lit pixels each
-    # know either within a fifth.
+    # For independent samples the change equals the error, and 2^-0.6 of it is reported if two doublings by chance show
+    # a faster rate. If the error falls like 1 / n, the change is sqrt(5) times the error. 30 seeds with a few lit
+    # pixels each know either within a fifth.
     assert 0.8 * 0.85 < ratio < 1.2 * 2.24
 
 

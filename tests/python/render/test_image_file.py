@@ -343,8 +343,8 @@ def test_alpha_is_not_multiplied_into_a_texture(tmp_path: Path, kind: str) -> No
     picture = np.broadcast_to(pixel.astype(dtype), (8, 8, 4))[..., :channels]
     write(tmp_path / f"card.{suffix}", np.ascontiguousarray(picture), **{"oiio:UnassociatedAlpha": 1})
     expected = srgb_to_linear(np.array([200, 100, 50]) / 255)
-    # The card is lit by the whole of its half of the sky: what it sends back is its reflectance, but for the noise of
-    # 1024 cosine-distributed samples of a constant, which is none, and 8-bit codes: half a code is 1.2% of the darkest.
+    # The card is lit by its whole half of the sky, so that its radiance is its reflectance. 1024 cosine-distributed
+    # samples of a constant have no noise; half a code of 8 bits is 1.2% of the darkest channel.
     np.testing.assert_allclose(textured(tmp_path, f"card.{suffix}"), expected, rtol=0.012)
 
 

@@ -96,7 +96,7 @@ def test_a_slanted_plane(device: str) -> None:
     pupil = -taken_by.entrance_pupil_position_m[2]
     # (x, y, -z) = s (slope_x, slope_y, 1) behind the pupil, on n . p = n_z * -3.
     distance = (3 - pupil) * SLANT[2] / (SLANT[2] - SLANT[0] * slopes[..., 0])
-    # Slopes are means over 64 x 64 random places in a pixel: to 1% of its width, 1e-4 of the distance at this slant.
+    # Slopes are means over 64 x 64 random points in a pixel: to 1% of its width, 1e-4 of the distance at this slant.
     np.testing.assert_allclose(image.layers["depth_middle"], pupil + distance, rtol=2e-4)
     # Over a pixel the distance changes by 1% of itself; the mean of 64 stratified samples is nearer to the middle's.
     np.testing.assert_allclose(image.layers["depth"], pupil + distance, rtol=2e-3)
@@ -371,8 +371,8 @@ def test_variance_includes_light_that_starts_at_lamps(
     actual = np.stack([image.pixels for image in images]).astype(float).var(axis=0, ddof=1).sum()
     told = np.stack([image.layers["variance"] for image in images]).astype(float).mean(axis=0).sum()
     # A starburst lights four pixels. Each figure of a pixel has one degree of freedom and 100 seeds, its variance 99:
-    # the quotient of the sums has a deviation of sqrt(2 * 2 / 100 / 4) = 0.1. Four of them. Even samples have less
-    # noise than is told.
+    # the quotient of the sums has a deviation of sqrt(2 * 2 / 100 / 4) = 0.1. Four of them are allowed. Stratified
+    # samples have less noise than reported.
     assert least < actual / told < 1.4
 
 

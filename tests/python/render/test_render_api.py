@@ -82,7 +82,7 @@ def test_renders_side_by_side_do_not_disturb_each_other() -> None:
 
 
 def test_more_samples_than_one_visit_of_a_tile_continue_the_sequence() -> None:
-    """Passes of up to 256 samples add up: no sample twice, none left out."""
+    """Passes of up to 256 samples add up: every sample is used exactly once."""
     many = rc.render(small_scene(), camera(8, 7), effects=(), spp=700, seed=1).pixels
     thin = camera(8, 7, "thin")  # which stops no sample, so that nothing of it is balanced
     rays = thin.generate_rays(spp=700, seed=1)

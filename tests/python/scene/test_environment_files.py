@@ -38,14 +38,14 @@ def xyz_of(x: float, y: float) -> np.ndarray:
 
 
 def xyz_from(chromaticities: tuple[float, ...]) -> np.ndarray:
-    """The primaries, in such shares that all together are the white of Y = 1 (SMPTE RP 177)."""
+    """Columns: XYZ of the primaries, scaled so that their sum is the white of Y = 1 (SMPTE RP 177)."""
     pairs = np.reshape(chromaticities, (4, 2))
     primaries = np.column_stack([(x, y, 1 - x - y) for x, y in pairs[:3]])
     return primaries * np.linalg.solve(primaries, xyz_of(*pairs[3]))
 
 
 def adapted(chromaticities: tuple[float, ...]) -> np.ndarray:
-    """Rec. 709 from such colours, white to white."""
+    """Matrix to Rec. 709 from colours of these primaries, with chromatic adaptation of the white (Bradford)."""
     from_xyz = xyz_from(chromaticities)
     cones = BRADFORD @ xyz_of(0.3127, 0.3290) / (BRADFORD @ from_xyz.sum(axis=1))
     return REC709_FROM_XYZ @ np.linalg.inv(BRADFORD) @ np.diag(cones) @ BRADFORD @ from_xyz

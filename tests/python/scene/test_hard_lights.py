@@ -58,7 +58,7 @@ def test_camera_inside_of_a_ball(device: str, backend: str) -> None:
 
 
 def test_sun_on_the_optical_axis(device: str, backend: str) -> None:
-    """From straight behind, a wall has albedo / pi times its light; straight into the lens, it has none at all."""
+    """With the sun behind the camera, a wall has albedo / pi times the sun's illuminance; with the sun ahead, 0."""
     worst, against = 0.0, 0.0
     for axis in AXES:
         forward = np.asarray(axis, float)
@@ -142,7 +142,7 @@ def test_lamp_close_to_a_floor(distance: float, device: str, backend: str) -> No
         irradiance = scenes.polygon_irradiance(points, np.array([0.0, 1.0, 0.0]), lamp[0])
         expected = pixel_means(rays, ALBEDO / math.pi * 1e4 * irradiance)
         scene = scenes.scene_of(floor, lamp)
-        # The rows that see the floor a few gaps beside the lamp.
+        # Only rows that see the floor at least a few gaps away from the lamp.
         beside = slice(8, None)
         # By samples of the lamp alone, and by rays that the floor scatters, too: neither floor nor lamp lights itself.
         for bounces in (0, 1):

@@ -27,7 +27,7 @@ def camera(lens: rc.Lens | None = None, film: rc.Film = FILM, **more: object) ->
 
 
 def behind() -> rc.Scene:
-    """The one triangle that a scene must have, where nobody looks."""
+    """The one triangle that a scene must have, out of the camera's view."""
     return rc.Scene.from_arrays(np.array([[0.0, 0.0, 1e5], [1.0, 0.0, 1e5], [0.0, 1.0, 1e5]]), [[0, 1, 2]])
 
 
@@ -39,7 +39,7 @@ def photograph(scene: rc.Scene, at: rc.Camera, tracing: str, device: str, **sett
 
 
 def stop_in_front(radius_mm: float, film_shift_mm: float) -> rc.Lens:
-    """A singlet whose stop is its entrance pupil; the film is beside the focus."""
+    """A singlet whose stop is its entrance pupil; the film is `film_shift_mm` behind the focus."""
     surfaces = [
         rc.Stop(clear_semi_diameter_mm=radius_mm, thickness_mm=0),
         rc.Surface(radius_of_curvature_mm=120, thickness_mm=4, material=1.6, clear_semi_diameter_mm=15),

@@ -114,7 +114,7 @@ def test_a_stretched_instance_has_the_levels_of_its_triangles() -> None:
     taken = rc.Camera(rc.Lens.load("double-gauss-50mm").focused(5), film=rc.Film(36, 24, (60, 40)), model="pinhole")
     one = rc.render(behind.with_instance(floor_of(corners), place), taken, effects=(), spp=4, device="cpu").pixels
     other = rc.render(behind.with_instance(floor_of(placed)), taken, effects=(), spp=4, device="cpu").pixels
-    # The same samples; a level is chosen by chance, and next to none changes by a rounding.
+    # The samples are the same; the texture level is chosen at random, and rounding changes very few choices.
     differ = np.abs(one - other).max(axis=2) > 1e-3 * other.max()
     assert one.std() > 0.1 * one.mean()
     assert differ.mean() < 0.01

@@ -1,4 +1,4 @@
-"""Light transport by name, and a clamp that the picture's metadata tell."""
+"""Light transport by name, and a clamp that the picture's metadata state."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ each_sensor = pytest.mark.parametrize("name", NAMES)
 
 
 def of(name: str) -> tuple[rc.Sensor, float, float]:
-    """A sensor, its pitch in um, and the lowest ISO (100 where there is none)."""
+    """A sensor, its pitch in um, and its lowest ISO (100 if it states no ISO)."""
     sensor = rc.Sensor.load(name)
     return sensor, sensor.pixel_pitch_um or 5.0, sensor.iso_range()[0] or 100.0
 

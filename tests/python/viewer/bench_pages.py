@@ -366,12 +366,12 @@ class BenchPage:
         self.canvas.click(position={"x": u * box["width"], "y": v * box["height"]})
 
     def hover(self, u: float, v: float) -> None:
-        """Over a place of the picture, which is scrolled to where it is seen."""
+        """Moves the mouse over a point of the picture, which is scrolled into view."""
         box = self.canvas.bounding_box()
         self.canvas.hover(position={"x": u * box["width"], "y": v * box["height"]})
 
     def turn(self, name: str, key: str, times: int = 1) -> None:
-        """A ring, by the keyboard."""
+        """Turns a ring by the keyboard."""
         for _ in range(times):
             self.test_id(name).press(key)
 

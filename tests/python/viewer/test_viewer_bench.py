@@ -226,7 +226,7 @@ def test_what_is_impossible_leaves_all_as_it_was(bench: LensBench) -> None:
 
 
 def test_an_undo_that_cannot_be_leaves_the_history(bench: LensBench) -> None:
-    """A lens that was possible may be none with the camera as it has been set since."""
+    """A lens that was valid before may be invalid with the camera's present settings."""
     first = bench.controls.lens
     assert bench.edit(lambda lens: lens_edits.with_value(lens, 0, "thickness_mm", 3.9))
     edited = bench.controls.lens
@@ -407,7 +407,7 @@ def test_a_shot_is_saved_over_itself(bench: LensBench, shot_path: Path) -> None:
     ],
 )
 def test_what_a_shot_says_of_its_lens_is_kept(bench_of: BenchOf, tmp_path: Path, lens: str, more: str) -> None:
-    """A bundled lens is saved by its name; one with another diaphragm is written beside the shot."""
+    """A bundled lens is saved by its name; a lens with another diaphragm is written to a file next to the shot."""
     path = bench_shots.write_panels_shot(tmp_path, lens=lens, more=more)
     shot = rc.Shot.load(path)
     again = saved_again(bench_of(shot), path, tmp_path / "saved.toml")
@@ -472,7 +472,7 @@ def test_pictures_of_all_kinds(bench: LensBench, tmp_path: Path) -> None:
 
 
 def test_the_shot_file_s_ways_of_taking_pictures_are_kept(bench_of: BenchOf, tmp_path: Path) -> None:
-    """Shown, told in the picture's metadata, and saved."""
+    """They are shown, stated in the picture's metadata, and saved."""
     more = 'transport = "whitted"\nclamp_cd_m2 = 40.0\nilluminant = "A"\nmax_bounces = 2\n'
     path = bench_shots.write_panels_shot(tmp_path, more=more)
     path.write_text(path.read_text().replace("effects = []", 'effects = ["dispersion"]'))

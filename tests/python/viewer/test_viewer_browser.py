@@ -522,7 +522,7 @@ def test_rays_of_the_point_under_the_mouse(bench: BenchPage) -> None:
 
 
 def plot(bench: BenchPage) -> str:
-    """The plot that is shown; none while one is drawn."""
+    """SVG of the plot that is shown; empty while one is being drawn."""
     return "" if bench.test_id("plot-busy").is_visible() else str(bench.test_id("plot-svg").inner_html())
 
 

@@ -213,7 +213,7 @@ def test_the_history_has_an_end() -> None:
 
 
 def test_what_the_zoom_ring_moves_is_not_edited() -> None:
-    """The lengths of its positions would take its place, and nobody would see what was typed."""
+    """The zoom positions' thicknesses would override the typed value, so that the edit would have no visible effect."""
     lens = rc.Lens.load("zoom-70-200mm")
     moved = [
         index

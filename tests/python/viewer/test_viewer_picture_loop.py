@@ -103,7 +103,7 @@ def test_the_newest_request_wins(watched: Watched) -> None:
 
 
 def test_every_request_that_is_begun_gets_its_first_frame(watched: Watched) -> None:
-    """So that the picture moves while the mouse does, however often that tells of itself."""
+    """The picture follows the mouse, however often the mouse sends events."""
     count, deadline = 0, time.monotonic() + 60
     while len({frame.serial for frame in watched.frames}) < 20:
         assert time.monotonic() < deadline
@@ -146,7 +146,7 @@ def test_another_exposure_needs_no_new_samples(watched: Watched) -> None:
 
 
 def test_a_picture_that_is_asked_for_once_more_is_one_frame(watched: Watched) -> None:
-    """The last one as it was, so that nothing is told twice of it."""
+    """The last frame is sent again unchanged, so that nothing is reported twice."""
     request = PictureRequest(camera(), noise_codes=4.0)
     before = watched.photograph(request)
     watched.loop.jpeg_quality = 90

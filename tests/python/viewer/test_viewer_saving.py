@@ -121,8 +121,8 @@ def test_a_picture_is_saved_with_the_noise_that_is_asked_for(bench: BenchPage, s
     until(lambda: bench.text("said"), lambda text: text == "Wrote refined.png", "saved", 240)
     bench.until_text("time-left", lambda text: text == "Time left: none")
     reference = rc.render(shot.scene, shot.camera, effects=(), spp=512, seed=9, device="cpu")
-    # The noise that is told is that of the error or more, to a fifth (test_viewer_picture_loop.py); 0.4 is that of the
-    # rounding of both, and 1.6 that of the reference. One sample has 36, and the picture that was not asked for 3.3.
+    # The reported noise is at least the error, within a fifth (test_viewer_picture_loop.py); the rounding of both
+    # pictures adds 0.4, and the reference 1.6. One sample has 36, and the picture without this button 3.3.
     assert error_of(folder / "refined.png", reference) < 2.9
 
 

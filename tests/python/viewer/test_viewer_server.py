@@ -171,7 +171,7 @@ def test_uploads_are_bounded(server: Server, bench: BenchPage, tmp_path: Path) -
     files = bench.page.locator("[data-testid=upload] input[type=file]")
     files.set_input_files(tmp_path / "large.zmx")
     bench.page.get_by_text("of at most 2 MiB").wait_for()
-    # Nor does somebody get it in who does not ask the page.
+    # Clients that bypass the page cannot upload it either.
     body = b"x" * 20_000_000
     request = urllib.request.Request(f"{server.url}_nicegui/client/x/upload/1", data=body, method="POST")
     with pytest.raises((urllib.error.HTTPError, OSError)) as refused:

@@ -1,4 +1,4 @@
-"""The table of the lens, while somebody types into it."""
+"""The table of the lens, while the user types into it."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ def floor() -> rc.Scene:
 def test_a_stereo_pair_stands_beside_its_camera_and_has_the_pose_of_opencv() -> None:
     rig = rc.Rig.stereo(camera(), baseline_m=BASELINE_M)
     left, right = rig.cameras["left"], rig.cameras["right"]
-    # The middle between them is the camera's place, and both look as it does; to rounding of numbers about 3.
+    # The cameras are centred on the original camera and have its orientation, to the rounding of numbers of about 3.
     assert np.add(left.position, right.position) / 2 == pytest.approx((1, 2, 3), abs=1e-14)
     assert np.linalg.norm(np.subtract(right.position, left.position)) == pytest.approx(BASELINE_M, abs=1e-14)
     for each in (left, right):
