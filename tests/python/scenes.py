@@ -84,7 +84,7 @@ FILM = rc.Film(24, 16, (24, 16))
 
 
 def pinhole(film: rc.Film = FILM, **pose: object) -> rc.Camera:
-    """No defocus: what a pixel sees is known to the point."""
+    """A camera without defocus, so that the exact points that a pixel sees are known."""
     lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
     return rc.Camera(lens, film=film, exposure_time_s=1, model="pinhole", **pose)
 

@@ -40,7 +40,7 @@ def test_dials_change_evenly_in_stops_and_focus_in_dioptres() -> None:
     assert camera.iso == pytest.approx(800, rel=1e-12)
     for time, key in ((0, shot.keys[0]), (1, shot.keys[0]), (3, shot.keys[1]), (9, shot.keys[1])):
         held = shot.camera_at(time)
-        # To the last digit: what does not change goes through no logarithm.
+        # Values equal to the last digit: constant parameters are not interpolated through a logarithm.
         assert (held.exposure_time_s, held.iso) == (key.exposure_time_s, key.iso)
         assert held.lens == shot.camera.lens.stopped_down(key.f_number).focused(key.focus_m)
 
@@ -289,7 +289,7 @@ def test_each_lens_of_a_film_tells_what_it_cannot_show(folder: Path) -> None:
     )
     words = ["render", "a.toml", "-o", "a.png", "--frames", "1-4", "--fps", "1", "--quiet", "--device", "cpu"]
     told = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, check=True).stderr
-    # Once for each of the lenses whose files name indices alone.
+    # One warning for each lens whose file states only refractive indices.
     lines = told.splitlines()
     assert len(lines) == 2, told
     for line, lens in zip(lines, ("planar-50mm-1897", "telephoto-250mm"), strict=True):

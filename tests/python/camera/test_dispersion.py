@@ -185,7 +185,7 @@ def test_colours_of_the_scene_stay_under_d65(grey_card: tuple[rc.Camera, np.ndar
     ("illuminant", "color"), [("A", (0.05, 0.05, 1)), ("FL2", (0.02, 1, 0.02)), ("D65", (1, 0.5, 0.1))]
 )
 def test_balanced_colours_are_right_in_the_mean(illuminant: str, color: tuple[float, float, float], spp: int) -> None:
-    """Against the same samples with nothing taken out of their chance."""
+    """The reference is the same samples without the control variates."""
     camera = rc.Camera(rc.Lens.load("double-gauss-50mm").stopped_down(4), film=rc.Film(24, 16, (72, 48)))
     scene = scenes.sky().with_environment(color)
     differences, means = [], []
@@ -237,7 +237,7 @@ def test_without_data_it_changes_nothing(name: str) -> None:
     camera = rc.Camera(lens, film=rc.Film(lens.film_mm[0], lens.film_mm[1], (48, 32)), exposure_time_s=1)
     plain = rc.render(busy_scene(), camera, effects=(), spp=256).pixels.astype(np.float64)
     seen = quiet(busy_scene(), camera, spp=256).pixels.astype(np.float64)
-    # The same paths, each by a third of the wavelengths that it could have: what differs is noise, and its mean zero.
+    # The same paths, each with a third of its possible wavelengths: the difference is noise of zero mean.
     assert seen.mean(axis=(0, 1)) == pytest.approx(plain.mean(axis=(0, 1)), rel=5e-3)
     assert np.sqrt(((seen - plain) ** 2).mean()) < 0.05 * plain.mean()
 

@@ -42,10 +42,10 @@ def disparity_mm(image: rc.Image) -> float:
 
 
 def disparity_of_rays_mm(lens: rc.Lens, distance_m: float) -> float:
-    """The same of rays from a point on the axis, traced in double, sorted by where they cross the exit pupil."""
+    """Disparity of rays from a point on the axis, traced in double, sorted by where they cross the exit pupil."""
     data = lens.first_order()
     source_z = lens.film_position_mm - 1000 * distance_m
-    # Places all over the entrance pupil. Seen from the point, they have the same light but for the cosines, 1e-3.
+    # Points all over the entrance pupil. They receive the same light from the point but for the cosines, 1e-3.
     side = np.linspace(-0.55, 0.55, 201) * data.entrance_pupil_diameter_mm
     x, y = (values.ravel() for values in np.meshgrid(side, side))
     to_pupil = np.stack([x, y, np.full_like(x, data.entrance_pupil_position_mm - source_z)], axis=1)
@@ -88,7 +88,7 @@ def test_left_and_right_are_the_whole(effects: tuple[str, ...], device: str) -> 
     assert left + right == pytest.approx(image.pixels.astype(float), rel=1e-6)
     # A quarter of the samples of the test above. Dispersion shifts colours by different amounts, which blurs little.
     assert disparity_mm(image) == pytest.approx(disparity_of_rays_mm(seen_by.lens, 2.5), rel=0.05)
-    # With another layer for which samples of dispersion count in their own pixels alone, too.
+    # The picture equals that with another layer for which dispersion shares no samples among pixels.
     without = photograph(scene, seen_by, effects=effects, layers=("variance",), light_tracing="off", device=device)
     if device == "cpu":
         assert np.array_equal(image.pixels, without.pixels)

@@ -29,7 +29,7 @@ def camera(**options: object) -> rc.Camera:
 
 
 def metres_per_pixel(cam: rc.Camera, depth_m: float) -> float:
-    """In a plane so far in front of the entrance pupil, on the axis."""
+    """Width of a pixel in a plane at this depth in front of the entrance pupil, on the axis."""
     return 2 * depth_m * np.tan(np.radians(cam.field_of_view_deg.horizontal) / 2) / cam.film.resolution[0]
 
 

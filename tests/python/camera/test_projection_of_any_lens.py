@@ -29,7 +29,7 @@ def camera_of(lens: rc.Lens, **others: object) -> rc.Camera:
 
 
 def in_lens(lens: rc.Lens, points_m: np.ndarray) -> np.ndarray:
-    """From the camera with the default pose, whose position is the middle of the film; mm."""
+    """Points in the lens frame, in mm, for a camera with the default pose, whose position is the film centre."""
     return 1000 * points_m + np.asarray(lens.film_frame[3])
 
 

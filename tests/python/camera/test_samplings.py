@@ -57,7 +57,7 @@ def test_double_precision_shows_the_same_picture() -> None:
 
 
 def test_polynomials_show_the_light_of_the_lens(device: str) -> None:
-    """They know the rims of stop, first and last surface only; others of this lens cut off less than 3%."""
+    """Polynomials include the rims of stop, first and last surface only; this lens's other rims block less than 3%."""
     assert light(device, "polynomial").pixels.mean() == pytest.approx(light(device).pixels.mean(), rel=0.03)
 
 

@@ -57,7 +57,7 @@ def test_a_tilted_lens_does_what_the_lens_does_with_turned_rays(pivot):
     ok = truth.status == 0
     assert np.array_equal(ok, traced.status == 0)
     assert np.abs(traced.directions[ok] - truth.directions[ok] @ turn.T).max() < 1e-12
-    # The same line: what lies between the two points on it goes along it.
+    # Both points lie on the same line: the vector between them is parallel to the direction.
     apart = traced.origins_mm[ok] - ((truth.origins_mm[ok] - about) @ turn.T + about)
     assert np.abs(np.cross(apart, traced.directions[ok])).max() < 1e-10
 

@@ -38,7 +38,7 @@ pictures = pytest.mark.picture_files  # a build without picture files has none o
 
 
 def commands(command: Any = TREE, words: tuple[str, ...] = ()) -> Iterator[str]:
-    """All that are Python, and the groups."""
+    """Names of all commands written in Python, and of the command groups."""
     name = " ".join(words)
     if name not in IN_CPP:
         yield name
@@ -62,7 +62,7 @@ def python(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -
 
 @pytest.fixture
 def cpp(capfd: pytest.CaptureFixture[str]) -> Said:
-    """The same of a command in C++, in this process: one of its own takes a quarter of a second to start."""
+    """Runs a command in C++ within this process, because a process of its own takes a quarter of a second to start."""
 
     def run_here(words: str) -> tuple[int, str, str]:
         code = rc._core._run_command([os.fsencode(word) for word in shlex.split(words)])  # type: ignore[attr-defined]
@@ -192,7 +192,7 @@ def test_help_has_one_form(name: str, python: Said, cpp: Said) -> None:
     ],
 )
 def test_mistakes_are_told_in_the_same_words(words: str, python: Said, cpp: Said) -> None:
-    """By a command in Python, and by one in C++ with the same options."""
+    """Compares a command in Python with one in C++ that has the same options."""
     errors = refusal(python(f"lens photo {words}"))
     assert errors.replace("lens photo", "lens info") == refusal(cpp(f"lens info {words}"))
 
@@ -322,7 +322,7 @@ def test_without_a_number_of_samples_the_noise_and_the_time_decide(tmp_path: Pat
         assert (image["noise"]["wanted"], image["noise"]["unit"]) == (2, "codes")
         assert image["noise"]["is_reached"]
         assert aim.format("2 codes of 255, for 60 s at most") in told
-    # Who says what noise is wanted waits for it; who says how long, has the usual noise.
+    # A noise goal alone has no time limit; a time limit alone keeps the default noise goal.
     assert aim.format("3 codes of 255") in figures("quad.obj", "--noise-codes", 3)[1]
     assert aim.format("10% of the light, for 9 s at most") in figures("shot.toml", "--noise", 0.1, "--seconds", 9)[1]
     assert aim.format("2 codes of 255, for 9 s at most") in figures("shot.toml", "--seconds", 9)[1]
@@ -349,7 +349,7 @@ def test_noise_and_time_that_are_out_of_reach_end_with_one_line(tmp_path: Path) 
 @pytest.mark.slow
 @pictures
 def test_pictures_that_show_nothing_are_told(tmp_path: Path) -> None:
-    """By how many stops, and what to change: the figures of the metered picture give both."""
+    """The message states the number of stops and the remedy, from the figures of the metered picture."""
     light = ["--spp", 4, "--environment", "100"]
     metered, told = render(tmp_path, *light)
     assert "nearly all" not in told

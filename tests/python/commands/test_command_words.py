@@ -150,7 +150,7 @@ def test_mistakes_have_a_hint_in_one_line(words: str, told: str, command: Comman
 
 @pictures
 def test_units_reach_all_commands(command: Command) -> None:
-    """Those in C++ and in Python, by the figures that they print."""
+    """Commands in C++ and in Python are compared by the figures that they print."""
     info = command("lens", "info", "tessar-50mm", "--f-number", "f/4", "--focus", "50cm").stdout
     assert info == command("lens", "info", "tessar-50mm", "--f-number", "4", "--focus", "0.5").stdout
     photo = ("lens", "photo", "tessar-50mm", "--f-number")

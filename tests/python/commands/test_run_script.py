@@ -48,7 +48,7 @@ def is_set_up(folder: Path) -> bool:
 
 
 def test_a_folder_that_stayed_keeps_its_build(built: Path) -> None:
-    """By its own path and by a link."""
+    """The folder is given by its own path and by a link."""
     link = built.with_name("link")
     link.symlink_to(built)
     for path in (built, link):

@@ -54,8 +54,8 @@ def test_patterns(pattern: str, samples: int, count: int) -> None:
     assert (wavefront.status == rc.RayStatus.OK).all()
     assert wavefront.weights.sum() == pytest.approx(1)
     assert np.hypot(*wavefront.pupil.T).max() <= 1 + 1e-15
-    # Each pattern stands for the whole disc: the mean of x^2 is 1/4. Equal weights on rings up to the edge count the
-    # edge too much, by one part in the number of rings.
+    # Each pattern represents the whole disc: the mean of x^2 is 1/4. Equal weights on rings up to the edge overweight
+    # the edge, by one part in the number of rings.
     mean = (wavefront.weights * wavefront.pupil[:, 0] ** 2).sum()
     assert mean == pytest.approx(0.25, rel={"grid": 0.02, "rings": 1e-12, "hexapolar": 0.2}[pattern])
 
@@ -86,7 +86,7 @@ def test_the_centroid_is_another_centre() -> None:
     assert chief.centre_mm[:2] == pytest.approx(spot.chief_ray_mm, abs=1e-12)
     assert centroid.centre_mm[:2] == pytest.approx(spot.centroid_mm, abs=1e-12)
     assert centroid.centre_mm[2] == pytest.approx(LENS.film_position_mm)
-    # They differ by a tilt.
+    # The two references differ by a tilt.
     levels = [LENS.wavefront(12.0, reference=r, remove="tilt").rms_waves for r in ("chief", "centroid")]
     assert levels[0] == pytest.approx(levels[1], rel=0.02)
 

@@ -43,7 +43,7 @@ def test_a_lens_of_revolution_is_the_same_all_around() -> None:
 
 
 def test_an_anamorphic_lens_that_is_turned() -> None:
-    """By 90 degrees: what was along x is along y."""
+    """Turning by 90 degrees exchanges x and y."""
     lens = anamorphic().stopped_down(4)
     quarter = turned(lens)
     for x, y in ((0.0, 0.0), (10.0, 4.0), (-3.0, 9.0)):
@@ -186,7 +186,7 @@ def test_spots_at_film_points_are_those_of_their_angles() -> None:
 
 
 def test_numbers_of_maps_are_written(tmp_path: Path) -> None:
-    """They have no frequency and no vectors: null."""
+    """Maps without frequency and vectors have null for them."""
     told = json.loads(analysis.as_json(analysis.field_map(LENS, "spot", points=(2, 2))))
     assert told["frequency_per_mm"] is None and told["vectors_mm"] is None
     assert np.shape(told["values"]) == (2, 2)

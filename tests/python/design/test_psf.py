@@ -126,7 +126,7 @@ def test_both_sums_agree() -> None:
 
 @pytest.mark.parametrize("blades", [5, 6])
 def test_blades_make_spikes(blades: int) -> None:
-    """Each straight edge sends light to both sides, and opposite edges to the same."""
+    """Each straight edge diffracts light to both sides, and opposite edges into the same two spikes."""
     lens = perfect(4).with_iris(blades, rotation_deg=10).stopped_down(8)
     psf = lens.psf(object_distance_m=FAR, size=128, pitch_um=8 * 0.5876)
     x, y = np.meshgrid(psf.x_um, psf.y_um)

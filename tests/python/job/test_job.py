@@ -94,7 +94,7 @@ def test_processes_that_are_killed_lose_only_what_they_have_in_hand(tmp_path: Pa
 
 @pytest.mark.slow
 def test_a_full_disk_stops_work_in_one_line_and_loses_nothing(tmp_path: Path) -> None:
-    """No file may be longer than a unit is: as on a disk that is full, a write ends before all is there."""
+    """File sizes are limited to less than a unit: as on a full disk, a write ends before all data is written."""
     folder = tmp_path / "job"
     job = made(folder)
 
@@ -334,7 +334,7 @@ def test_units_of_another_job_do_not_count(tmp_path: Path) -> None:
 
 
 def test_each_changed_bit_of_a_unit_is_found(job_of_four: Path, tmp_path: Path) -> None:
-    """All bits of the archive's directory, and a sample of the others."""
+    """Changes bits of the archive's directory, and a sample of the other bits."""
     file = next((job_of_four / "units").rglob("*pixels*.npz"))
     content, damaged = file.read_bytes(), tmp_path / "unit.npz"
     directory = content.rindex(b"PK\1\2")
@@ -378,7 +378,7 @@ def test_a_unit_holds_the_samples_that_its_name_says(tmp_path: Path, job_of_four
 
 
 def test_parts_share_a_job_without_a_scheduler(tmp_path: Path) -> None:
-    """With a number of samples each takes its own units alone; with a noise goal any of them ends with the picture."""
+    """With a number of samples each part takes its own units only; with a noise goal any part completes the job."""
     counted = made(tmp_path / "counted", a=shot(40), b=shot(40, seed=4))
     done = [0]
     for k in (3, 1, 2):

@@ -31,7 +31,7 @@ def test_faces_that_cross_inside_their_rims_are_refused_with_their_numbers() -> 
     with pytest.raises(rc.LensFileError, match=r"surface 2: crosses surface 3, by 0\.24 mm at 5 mm") as caught:
         lens_of(front(thickness_mm=1.1), PLANE)
     assert caught.value.surface == 2
-    # In air, where the next element's face comes back to this one's.
+    # An overlap in air: the next element's front face curves back to this one's.
     first = [front(thickness_mm=3.0), {"thickness_mm": 1.2}]
     hollow: dict[str, object] = {"radius_of_curvature_mm": -10.0, "material": 1.5, "thickness_mm": 3.0}
     with pytest.raises(rc.LensFileError, match=r"surface 3: crosses surface 4, by 0\.14 mm at 5 mm"):
@@ -47,7 +47,7 @@ def test_glass_is_there_up_to_the_rim_of_its_larger_face() -> None:
     # A hollow one may be sunk into the glass, as in a fisheye's front.
     dome: dict[str, object] = {"radius_of_curvature_mm": 10.0, "material": 1.5, "clear_semi_diameter_mm": 9.9}
     lens_of({**dome, "thickness_mm": 1.0}, {"radius_of_curvature_mm": 5.0, "clear_semi_diameter_mm": 4.0})
-    # In air the smaller face has nothing out there.
+    # Faces on both sides of an air gap overlap only up to the smaller rim.
     lens_of(
         {"material": 1.5, "thickness_mm": 3.0},
         {"radius_of_curvature_mm": 10.0, "thickness_mm": 1.0},

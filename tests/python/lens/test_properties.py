@@ -146,7 +146,7 @@ def test_a_ray_sent_back_retraces_its_way(lens: Drawn, start: str, seed: int) ->
     other = built.trace(ends, ways, start=back)
     stays, condition = spread(built, ends, ways, lens.size, start=back)
     assert (other.status[stays] == 0).all()
-    # From where it leaves the first surface it must meet the point that it came from, in the direction that it came in.
+    # The reversed ray, leaving the first surface, must hit the original point in the opposite direction.
     reach = np.sum((origins - other.origins_mm) * other.directions, axis=1, keepdims=True)
     apart = np.linalg.norm(other.origins_mm + reach * other.directions - origins, axis=1) / lens.size
     turned = np.linalg.norm(other.directions + directions, axis=1)

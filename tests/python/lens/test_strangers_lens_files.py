@@ -109,7 +109,7 @@ def test_without_a_stop_the_first_surface_is_one(name: str, tmp_path: Path) -> N
 
 
 def test_a_list_of_faces_alone(tmp_path: Path) -> None:
-    """It begins with surface 1, or gives the object the glass of the first element, and ends with the last face."""
+    """The list begins with surface 1, or gives the object the first element's glass, and ends with the last face."""
     proper, _ = load(tmp_path, "proper.zmx", zemax([OBJECT, *SINGLET], "FLOA"))
     faces = [surface(25, 3, 6, CROWN), surface(-40, 0, 6)]
     for first in (0, 1):

@@ -59,7 +59,7 @@ def started(code: str) -> Iterator[subprocess.Popen[str]]:
 LONG_CALLS = {
     # 25 s, and a tile of 1024 pixels takes 4 s.
     "64 bounces": 'rc.render(room(), camera, effects=(), spp=256, max_bounces=64, device="cpu")',
-    # Which waits for another thread's picture.
+    # This render waits for another thread's picture.
     "a second picture": """
         work = lambda: rc.render(room(), camera, effects=(), max_bounces=1, spp=4096, device="cpu")
         threading.Thread(target=work, daemon=True).start()

@@ -103,7 +103,7 @@ def test_blocks_run(page: Path, names: dict[str, Any]) -> None:
         if missing := what_is_missing(code):
             skipped.append(f"line {line} wants {missing}")
             continue
-        # With the lines of the page in a traceback.
+        # Blank lines make a traceback show the line numbers of the page.
         exec(compile("\n" * (line - 1) + code, str(page), "exec"), names)
     if skipped:
         pytest.skip("; ".join(skipped))

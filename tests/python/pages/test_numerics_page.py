@@ -96,7 +96,7 @@ def test_page(tmp_path: Path) -> None:
 
 
 def test_a_page_of_two_machines(tmp_path: Path) -> None:
-    """Each has backends that the other lacks; of what both have, the figure nearest to its limit counts."""
+    """Each machine has a backend that the other lacks; for shared backends, the figure nearest to its limit counts."""
     both = {"worst": 1.0}, {"worst": 3.0, "tried": "900 rays"}
     gpu = RUN | {"commit": "def", "devices": ["CUDA"]}
     of_cpu, of_gpu = (

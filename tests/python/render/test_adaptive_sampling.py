@@ -111,7 +111,7 @@ POINT = scenes.scene_of(scenes.quad((0, 0, 9), 1)).with_point_light((0, 0, -4), 
     ],
 )
 def test_the_noise_of_lamps_is_told(scene: rc.Scene, focus_m: float, resolution: tuple[int, int], device: str) -> None:
-    """Their light comes from samples of their own, few for a picture of few pixels."""
+    """Lamps have samples of their own (light tracing), which are few for a picture of few pixels."""
     lens = rc.Lens.load("double-gauss-50mm").focused(focus_m)
     view = rc.Camera(lens, film=rc.Film(24, 16, resolution), position=(0, 0, 0), exposure_time_s=1, iso=1e-3)
     told, pictures = [], []

@@ -41,7 +41,7 @@ look_at_m = [1, 0, 0]
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """With a shot whose camera moves by a metre in a second, past a wall that begins at x = 0."""
+    """A folder with a shot whose camera moves at 1 m/s past a wall that begins at x = 0."""
     (tmp_path / "wall.obj").write_text("v 0 -5 0\nv 5 -5 0\nv 5 5 0\nv 0 5 0\nf 1 2 3 4\n")
     (tmp_path / "pan.toml").write_text(SHOT)
     monkeypatch.chdir(tmp_path)

@@ -221,7 +221,7 @@ def test_unknown_tone_curve(image: rc.Image, tmp_path: Path) -> None:
 
 
 def write(path: Path, pixels: np.ndarray, **attributes: object) -> None:
-    """By another program than ours."""
+    """Writes a picture with OpenImageIO instead of realcam."""
     spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], str(pixels.dtype))
     if pixels.shape[2] == 4:
         spec.alpha_channel = 3

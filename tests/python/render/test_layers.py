@@ -228,7 +228,7 @@ def test_a_vignetted_corner_keeps_its_depth(device: str) -> None:
     middle = image.layers["depth_middle"]
     passes = ~np.isnan(middle)
     np.testing.assert_allclose(middle[passes], 3.0, rtol=1e-5)
-    # At the edge of the image circle a pixel may be lit and its middle dark, and then it has little light.
+    # At the edge of the image circle a pixel may get light but none at its centre; the pixel then has little light.
     assert not (passes & ~lit).any()
     assert light[lit & ~passes].max() < 0.05 * light.max()
     assert (image.layers["object_id"][~passes] == 0).all()

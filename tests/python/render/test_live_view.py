@@ -195,7 +195,7 @@ def test_the_picture_on_the_gpu_is_that_of_render(scene: rc.Scene) -> None:
     torch = pytest.importorskip("torch")
     shared = torch.from_dlpack(pixels)
     assert shared.data_ptr() == pixels.__cuda_array_interface__["data"][0]
-    # It outlives the view, and what the view collects next does not change it.
+    # The tensor outlives the view, and later samples of the view do not change it.
     before = shared.sum().item()
     live.shoot(camera(exposure_time_s=0.25), spp=8).codes  # noqa: B018
     del live, pixels
@@ -304,7 +304,7 @@ def test_cancel_leaves_a_whole_frame_or_none(scene: rc.Scene) -> None:
         live.cancel()
         live.shoot(camera(), spp=spp)
         second = live.shoot(camera(), spp=spp)
-        # From before the first frame's end to after the second's.
+        # The cancellation comes at times from before the first frame's end to after the second's.
         stop = threading.Timer(whole * i / 4, live.cancel)
         stop.start()
         try:

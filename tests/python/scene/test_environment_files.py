@@ -238,7 +238,7 @@ def test_rotation_and_scale_of_an_environment(tmp_path: Path) -> None:
     turned = triangle.with_environment(tmp_path / "sky.exr", scale=3, rotation_deg=90)
     seen = rc.render(turned, aside, effects=(), spp=4, max_bounces=0)
     np.testing.assert_allclose(seen.pixels, 3 * ahead.pixels, rtol=1e-5)
-    # By half a column: the mean of two, with the same light in all of them.
+    # A rotation by half a column averages adjacent columns, and keeps the total light.
     half = triangle.with_environment(SKY, rotation_deg=360 / 32)
     assert half == triangle.with_environment((SKY + np.roll(SKY, -1, axis=1)) / 2)
     assert triangle.with_environment(5, scale=2, rotation_deg=33) == triangle.with_environment(10)

@@ -144,7 +144,7 @@ def test_lamp_close_to_a_floor(distance: float, device: str, backend: str) -> No
         scene = scenes.scene_of(floor, lamp)
         # Only rows that see the floor at least a few gaps away from the lamp.
         beside = slice(8, None)
-        # By samples of the lamp alone, and by rays that the floor scatters, too: neither floor nor lamp lights itself.
+        # Samples of the lamp alone (0), and rays scattered by the floor as well (1): neither surface lights itself.
         for bounces in (0, 1):
             measured = scenes.radiance(scene, camera, spp=1024, max_bounces=bounces, device=device)[..., 0]
             worst = max(worst, abs(float(measured[beside].mean() / expected[beside].mean()) - 1))

@@ -211,7 +211,7 @@ def box_of_slivers(size: float, gap: float) -> rc.Scene:
 
 
 def test_no_light_leaks_between_slivers(device: str, backend: str) -> None:
-    """In a closed box under a bright sky, through a fisheye that sees half of it."""
+    """The camera is in a closed box under a bright sky, and its fisheye sees half of the box."""
     lens = rc.Lens.load("fisheye-10mm")
     lit_pixels, samples = 0, 0
     for size in (0.3, 1.0, 1e3, 1e7):

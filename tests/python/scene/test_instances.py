@@ -189,7 +189,7 @@ def test_a_floor_made_by_scale_takes_shadows(device: str, size: float) -> None:
 
 @pytest.mark.parametrize("unit", [1e-6, 1e5])
 def test_objects_in_other_units(device: str, unit: float) -> None:
-    """Smooth normals and textures need points within triangles to the precision of the object's unit, even micrometres."""
+    """Smooth normals and textures need points within triangles as precise as the object's unit, even micrometres."""
     vertices, triangles, normals, uvs = ball(16)
     small = as_scene((vertices * unit, triangles, normals, uvs))
     expected = GROUND.with_instance(as_scene(ball(16)), placed(0, 0.7, -1))

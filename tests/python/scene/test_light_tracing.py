@@ -57,7 +57,7 @@ def flux(picture: np.ndarray, film: rc.Film) -> float:
 
 
 def test_all_light_of_a_point_in_the_stop_reaches_the_film(device: str, backend: str) -> None:
-    """Its luminous intensity times the solid angle of the stop, wherever it stands: closed form."""
+    """Closed form: the luminous intensity times the solid angle of the stop, for any position of the point."""
     worst = 0.0
     for distance_m, tangent in ((0.3, 0.0), (2.0, 0.05), (1e3, -0.1)):
         place = (tangent * distance_m, 0.5 * tangent * distance_m, -distance_m)
@@ -169,7 +169,7 @@ def before_a_dim_wall() -> rc.Scene:
 
 
 def led_in_a_dim_panel() -> rc.Scene:
-    """The same in the plane of the wall, in a hole of it."""
+    """A small lamp in the plane of the panel, in a hole of it."""
     left, right = ((x, 0, -1) for x in (-0.952, 1.052))
     above, below = ((0.05, y, -1) for y in (1.002, -1.002))
     return scenes.scene_of(
@@ -299,7 +299,7 @@ def test_noise_falls_where_lamps_are_out_of_focus_and_nowhere_rises(case: str, s
 
 
 def test_a_fine_mesh_in_focus_is_left_to_samples_of_pixels(device: str) -> None:
-    """Its triangles are smaller than pixels, but next to others. Where its edges do not reach, nothing is traced."""
+    """The mesh's triangles are smaller than pixels but adjacent. Light is traced only near the mesh's outer edges."""
     at = camera(position=(0, 0, 0))
     by_pixels, both = (photograph(fine_mesh(), at, tracing, device, spp=4) for tracing in ("off", "weighted"))
     lit = by_pixels.min(axis=2) > 0
@@ -344,7 +344,7 @@ def test_no_lamp_in_focus_is_missed(share: float, device: str) -> None:
 
 @pytest.mark.parametrize("half_width_m", [2e-4, 2e-3])
 def test_a_lamp_in_focus_has_all_its_light(half_width_m: float, device: str) -> None:
-    """Its radiance times its area and the solid angle of the stop: closed form."""
+    """Closed form: radiance times the lamp's area and the solid angle of the stop."""
     bare = stop_in_front(2.0, 0.0)
     lens = rc.Lens(surfaces=bare.surfaces, film_distance_mm=bare.film_distance_mm).focused(5.0)
     film = rc.Film(3.6, 2.4, (36, 24))

@@ -49,7 +49,7 @@ def test_a_map_of_one_colour_is_the_number_times_its_channel(
     mapped = picture(PBR(**{number: 0.8, texture: channel(index, 0.5, 0.9)}, **rest))
     expected = picture(PBR(**{number: 0.4}, **rest))
     without = picture(PBR(**{number: 0.8}, **rest))
-    # The same paths, but for roundings.
+    # The paths are the same, except for roundings.
     np.testing.assert_allclose(mapped, expected, rtol=1e-3)
     assert np.abs(without / expected - 1).max() > 0.02
 

@@ -97,7 +97,7 @@ def test_a_replaced_texture_is_forgotten() -> None:
     assert both.materials["wood.2"].texture is not None
 
 
-# Each is the same grey or colour, as the same 8-bit code.
+# All are the same grey or colour, from the same 8-bit codes.
 CODES = np.array([[0, 51], [153, 255]])
 SAME = {
     "grey uint8": CODES.astype(np.uint8),

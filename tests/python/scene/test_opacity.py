@@ -96,7 +96,7 @@ def test_a_cutoff_makes_edges_sharp() -> None:
 
 
 def test_a_lamp_with_holes_gives_the_light_of_what_is_there() -> None:
-    """With light samples (bounces 0) and with scattered rays that meet it: the same mean."""
+    """Light samples (bounces 0) and scattered rays that hit the lamp give the same mean."""
     floor = (scenes.quad((0, 0, -2), 3)[0], rc.Material(diffuse=(0.5, 0.5, 0.5)))
     lamp, _ = scenes.quad((0, 0, 1), 2, right=(-1, 0, 0))
     camera = scenes.pinhole()

@@ -73,7 +73,7 @@ def differences(linear: np.ndarray, reference: np.ndarray) -> np.ndarray:
 
 
 def scaled_to(linear: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """By one factor for the whole picture: developers have exposures of their own."""
+    """Scales the picture by a single factor to fit the reference, because developers choose their own exposure."""
     return linear * (reference * linear).sum() / (linear * linear).sum()
 
 

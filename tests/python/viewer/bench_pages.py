@@ -171,8 +171,8 @@ async () => {
     return (await fetch(`/tests/asked/${key}`)).json();
 }
 """
-# The same after the last frame has been acknowledged; null before. The server answers a slow acknowledgement with the
-# same picture as a better JPEG, which has a serial of its own.
+# The serials after the last frame has been acknowledged; null before. The server answers a slow acknowledgement with
+# the same picture as a better JPEG, which has a serial of its own.
 _ASKED_IN_THE_END = """
 async () => {
     const key = [...realcamStreams.keys()][0].split("/").pop();

@@ -42,7 +42,7 @@ async def asked(key: str) -> dict[str, int]:
 
 @app.get("/tests/asked_in_the_end/{key}")
 async def asked_in_the_end(key: str) -> dict[str, int] | None:
-    """The same, when the page has acknowledged all frames; None before."""
+    """The requested serials as in `asked`, once the page has acknowledged all frames; None before."""
     window = _opened[0].get(key)
     assert window is not None
     if window.stream._sent or window.stream._frames:

@@ -275,7 +275,7 @@ def test_another_lens_brings_its_film_and_keeps_the_rings(bench: LensBench) -> N
 
 
 def test_an_edited_lens_comes_back_after_another(bench: LensBench) -> None:
-    """With its film, and of the pixels that are wanted now."""
+    """Undo restores the edited lens with its film, at the present resolution."""
     assert bench.edit_value(0, "radius_mm", 41.0)
     edited, film = bench.controls.lens, bench.controls.film
     assert bench.set_lens(rc.Lens.load("phone-4mm"))
@@ -533,7 +533,7 @@ def test_another_copy_is_one_of_the_lens_and_is_undone(bench: LensBench) -> None
     assert bench.undo() and bench.controls.lens == first
     assert bench.another_copy("precision")
     third = bench.controls.lens  # what undo has brought back is a copy, too, and no drawing
-    # All are of the lens as it was drawn: errors do not add up, but for the limit of 0.1% of each radius.
+    # All copies derive from the lens as designed: errors do not add up beyond the limit of 0.1% of each radius.
     for copy in (first, second, third):
         for surface, before in zip(copy.surfaces, drawn.surfaces, strict=True):
             assert surface.curvature_per_mm == pytest.approx(before.curvature_per_mm, rel=1.01e-3, abs=1e-4)

@@ -98,7 +98,7 @@ def noise_of(status: str) -> float:
 
 
 def test_resolution_and_noise(bench: BenchPage) -> None:
-    # With a seventh of the pixels one frame may take more samples than 4 grey levels ask for, and go past 2.
+    # With a seventh of the pixels, a frame may take more samples than 4 grey levels require, and so go below 2.
     bench.choose("resolution", "320 pixels across")
     assert bench.picture().shape == (213, 320, 3)
     assert bench.status.startswith("320 × 213")

@@ -49,7 +49,7 @@ def test_a_picture_that_is_not_wanted_any_more_is_given_up(spheres: rc.Scene) ->
 
 @wants_it
 def test_only_the_first_frame_of_a_change_is_noisy_where_denoising_is_slow(watched: Watched) -> None:
-    """With all pixels that it has; every later frame is denoised, and has no fewer pixels than the one before it."""
+    """The first one has all pixels; each later frame is denoised, with at least as many pixels as the previous one."""
     watched.loop._taker._denoiser._rates.extend([1.0] * 5)  # pixels a second
     big = camera(film=rc.Film(36, 24, (600, 400)))
     serial = watched.loop.submit(PictureRequest(big, noise_codes=0.01, denoises=True))

@@ -76,5 +76,5 @@ def test_tasks_take_no_more_than_their_share_of_the_time() -> None:
         assert ended.wait(WAIT_S)
     finally:
         tasks.close()
-    # Each begins four times as long after the one before as that has taken, 0.05 s or more.
+    # Tasks start at intervals of at least four times the duration of a task, which is 0.05 s or more.
     assert all(after - before >= 0.2 for before, after in pairwise(times))

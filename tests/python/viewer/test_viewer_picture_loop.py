@@ -46,8 +46,8 @@ def test_a_picture_is_refined_to_the_noise_that_is_asked_for(watched: Watched) -
 
 
 def test_the_time_that_is_left_is_told_truly(watched: Watched) -> None:
-    """In the second half within a factor of two: the square of the noise is estimated to two fifths, and the load of a
-    machine varies."""
+    """In the second half, the reported time is right within a factor of two: the square of the noise is estimated to
+    two fifths, and the load of a machine varies."""
     told: list[tuple[float, float | None]] = []
     take = watched._take
     watched.loop._encoder._on_frame = lambda frame: (told.append((time.monotonic(), frame.left_s)), take(frame))
@@ -263,7 +263,7 @@ def test_who_asks_means_the_picture_that_was_wanted_last(watched: Watched) -> No
 
 
 def test_the_light_of_a_point_does_not_depend_on_the_exposure(watched: Watched) -> None:
-    """It is metered in the samples that are there, which another exposure time has collected."""
+    """Metering uses the existing samples, which were collected with another exposure time."""
     request = PictureRequest(camera(), noise_codes=4.0)
     watched.photograph(request)
     first = watched.loop.point(0.5, 0.7).result(10)
@@ -366,7 +366,7 @@ def test_noise_is_measured_between_doublings_too() -> None:
 def test_a_picture_ends_with_about_the_samples_that_its_noise_takes(
     watched: Watched, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Which are seldom those of a doubling. 1.2 times less noise takes 1.44 times the samples, and estimates err."""
+    """The number is seldom a power of two. 1.2 times less noise takes 1.44 times the samples, and estimates err."""
     monkeypatch.setattr(Pace, "refining_spp", lambda *_: 1)
     first = watched.photograph(PictureRequest(camera(), noise_codes=2.0))
     assert first.noise_codes is not None

@@ -113,7 +113,7 @@ def error_of(path: Path, reference: rc.Image) -> float:
 
 
 def test_a_picture_is_saved_with_the_noise_that_is_asked_for(bench: BenchPage, server: Server, folder: Path) -> None:
-    """By its own button, though that is clicked as soon as the page is there, when the picture has one sample."""
+    """It has a button of its own, here clicked as soon as the page is open, when the picture has one sample."""
     shot = rc.Shot.load(server.shot)
     bench.choose("refine to", "2 grey levels")
     bench.until_text("save-refined", lambda text: text == "Save to 2 grey levels")
@@ -127,7 +127,7 @@ def test_a_picture_is_saved_with_the_noise_that_is_asked_for(bench: BenchPage, s
 
 
 def test_a_picture_is_saved_as_it_is_seen_now(bench: BenchPage, folder: Path) -> None:
-    """With all its pixels, denoised or not, and without waiting for the noise that is asked for."""
+    """It has all pixels of the shown picture, denoised or not, and is saved without waiting for the noise goal."""
     oiio = pytest.importorskip("OpenImageIO")
     bench.choose("resolution", "960 pixels across")
     bench.choose("refine to", "half a grey level (fine)")

@@ -328,7 +328,7 @@ def test_a_slow_link_shows_the_newest_frame_and_recovers(browser: playwright.Bro
         until(seen, lambda f: any(frame["jpeg_quality"] < 80 for frame in f[len(frames) :]), "a coarser frame")
         link.bytes_per_s = float("inf")
         bench.send({"type": "orbit", "x": 0.05, "y": 0})
-        # At its best, although nothing is touched any more.
+        # The last frame comes at the best quality, although the user does nothing more.
         until(
             lambda: [(f["serial"], f["jpeg_quality"], f["is_final"]) for f in seen()[-3:]],
             lambda last: last[-1][1] == 90 and last[-1][2],
