@@ -27,7 +27,7 @@ def device(request: pytest.FixtureRequest) -> str:
 
 @pytest.fixture
 def backend(device: str) -> str:
-    """What a measurement calls it."""
+    """Name of the device's backend in measurements."""
     return {"cpu": "Embree", "cuda": "CUDA"}.get(device, device)
 
 

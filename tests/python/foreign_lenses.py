@@ -1,14 +1,15 @@
-"""Prescriptions of other people's lenses, as facts, in files such as Zemax and CODE V write them.
+"""Prescriptions of third-party lenses, as facts, in files as Zemax and CODE V write them.
 
-They come with what is hard about such files: glasses that no catalogue has, mirrors, floating rims, tilts, an object at
-hand, two bytes for each character, and lines and numbers that a reader has no use for.
+They include the difficulties of such files: glasses that are in no catalogue, mirrors, floating rims, tilts, a near
+object, two bytes for each character, and lines and numbers that a reader does not need.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-# What stands before the surfaces, and a line for each surface: curvature | distance | glass | semi-diameter | the rest.
+# For each file: the lines before the surfaces, and a row for each surface:
+# curvature | distance | glass | semi-diameter | further operands.
 ZEMAX: dict[str, tuple[str, str]] = {
     # Two mirrors without aberrations of the third order: Handbook of Optics, 2nd edition, vol. II, chapter 18.
     "two-mirrors.zmx": (
@@ -216,7 +217,7 @@ def zemax_text(name: str) -> str:
     *before, waves = head.strip().splitlines()
     lines = ["VERS 160608 48 100027", "MODE SEQ", "NAME ", "PFIL 0 0 0", "UNIT MM X W X CM MR CPMM", *before]
     wavelengths = waves.split()[1:]
-    # All 24 places are written, whether they are used or not.
+    # All 24 wavelength slots are written, whether they are used or not.
     lines += [f"WAVM {i + 1} {(wavelengths + 24 * ['0.55'])[i]} 1" for i in range(24)]
     for number, row in enumerate(rows.strip().splitlines()):
         curvature, distance, glass, rim, *rest = [word.strip() for word in row.split("|")]

@@ -13,7 +13,7 @@ import pytest
 from realcam import _core
 
 PYTHON = [sys.executable, "-m", "realcam"]
-# CMake builds it beside the folder of the extension; an installed package has none.
+# CMake builds the executable beside the extension's folder; an installed package has no executable.
 _BUILT = Path(_core.__file__).resolve().parents[1] / "realcam"
 EXECUTABLE = [str(_BUILT)] if _BUILT.is_file() else []
 
@@ -27,7 +27,7 @@ wants_executable = pytest.mark.skipif(not EXECUTABLE, reason="the executable is 
 
 @cache
 def loads_cuda_plugins() -> bool:
-    """Whether the CUDA backend of this build would be a plug-in; False where it is compiled in."""
+    """True if this build loads its CUDA backend as a plug-in; False if the backend is compiled in."""
     environment = {**os.environ, "REALCAM_CUDA_PLUGIN": ""}
     done = subprocess.run([*PYTHON, "devices"], capture_output=True, text=True, env=environment)
     return "no CUDA backend" in done.stderr

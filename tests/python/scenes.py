@@ -84,7 +84,7 @@ FILM = rc.Film(24, 16, (24, 16))
 
 
 def pinhole(film: rc.Film = FILM, **pose: object) -> rc.Camera:
-    """No defocus: what a pixel sees is known to the point."""
+    """A camera without defocus, so that the exact points that a pixel sees are known."""
     lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
     return rc.Camera(lens, film=film, exposure_time_s=1, model="pinhole", **pose)
 
@@ -102,7 +102,7 @@ def radiance(
 def points_on_plane(
     camera: rc.Camera, spp: int, point: Sequence[float], normal: Sequence[float]
 ) -> tuple[np.ndarray, rc.CameraRays]:
-    """Where the camera's rays meet a plane, (N, 3)."""
+    """Points (N, 3) where the camera's rays intersect a plane, and the rays."""
     rays = camera.generate_rays(spp=spp)
     o, d, n = rays.origins_m, rays.directions.astype(np.float64), np.asarray(normal, float)
     distance = ((np.asarray(point, float) - o) @ n) / (d @ n)

@@ -40,7 +40,7 @@ def test_dials_change_evenly_in_stops_and_focus_in_dioptres() -> None:
     assert camera.iso == pytest.approx(800, rel=1e-12)
     for time, key in ((0, shot.keys[0]), (1, shot.keys[0]), (3, shot.keys[1]), (9, shot.keys[1])):
         held = shot.camera_at(time)
-        # To the last digit: what does not change goes through no logarithm.
+        # Values equal to the last digit: constant parameters are not interpolated through a logarithm.
         assert (held.exposure_time_s, held.iso) == (key.exposure_time_s, key.iso)
         assert held.lens == shot.camera.lens.stopped_down(key.f_number).focused(key.focus_m)
 
@@ -247,7 +247,7 @@ def test_a_shot_file_has_keys(folder: Path) -> None:
         Key(2, focus_m=math.inf, iso=400),
     )
     assert shot.shake == rc.Shake(rms_deg=0.1, seed=3)
-    # As the shutter opens, halfway between the keys.
+    # The shutter opens halfway between the two keys.
     assert shot.camera.lens.focus_distance_m == pytest.approx(2, rel=1e-9)
     assert shot.camera.iso == 400
     assert pickle.loads(pickle.dumps(shot)).keys == shot.keys
@@ -289,7 +289,7 @@ def test_each_lens_of_a_film_tells_what_it_cannot_show(folder: Path) -> None:
     )
     words = ["render", "a.toml", "-o", "a.png", "--frames", "1-4", "--fps", "1", "--quiet", "--device", "cpu"]
     told = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, check=True).stderr
-    # Once for each of the lenses whose files name indices alone.
+    # One warning for each lens whose file states only refractive indices.
     lines = told.splitlines()
     assert len(lines) == 2, told
     for line, lens in zip(lines, ("planar-50mm-1897", "telephoto-250mm"), strict=True):
@@ -297,7 +297,7 @@ def test_each_lens_of_a_film_tells_what_it_cannot_show(folder: Path) -> None:
 
 
 def test_an_f_number_of_the_file_is_that_of_all_focal_lengths(folder: Path) -> None:
-    """Also where the lens does not open as far at the position that it had before its keys."""
+    """This holds even if the lens cannot open to that f-number at the zoom position it had before its keys apply."""
     lens = (Path(__file__).parents[3] / "lenses" / "zoom-25-50mm.toml").read_text()
     slow = lens.replace("stop_semi_diameter_mm = 8.31038", "stop_semi_diameter_mm = 4.15519")
     assert slow != lens

@@ -30,8 +30,8 @@ def perfect_lens(f_number: float, focal_length: float = 50.0) -> rc.Lens:
 
 
 def airy_radius_um(f_number: float, focal_length: float = 50.0) -> float:
-    """Of the first dark ring, 0.61 wavelengths over the sine of the marginal angle. From the focus the hyperboloid
-    is at f (n - 1) / (n cos(angle) - 1)."""
+    """Radius of the first dark ring: 0.61 wavelengths over the sine of the marginal angle. The hyperboloid is at the
+    distance f (n - 1) / (n cos(angle) - 1) from the focus."""
     n, radius = 1.6, 0.5 * focal_length / f_number
     angle = scipy.optimize.brentq(
         lambda a: focal_length * (n - 1) * math.sin(a) / (n * math.cos(a) - 1) - radius, 0.0, 0.5
@@ -92,7 +92,7 @@ def test_the_picture_of_a_star_is_airys_disc(f_number: float) -> None:
 
 
 def perfect_contrast(frequency: np.ndarray) -> np.ndarray:
-    """Of a round aperture, by frequency over the limit."""
+    """MTF of a diffraction-limited circular aperture; `frequency` is relative to the cutoff frequency."""
     return 2 / np.pi * (np.arccos(frequency) - frequency * np.sqrt(1 - frequency**2))
 
 
@@ -137,7 +137,7 @@ def test_an_even_field_stays_as_it_is(model: str, others: tuple[str, ...]) -> No
         rc.render(scenes.sky(), camera, spp=1024, effects={*others, *more}, device="cpu").pixels.astype(float)
         for more in (("diffraction",), ())
     )
-    # Of 1024 samples that count for one to three wavelengths.
+    # Noise of 1024 samples with one to three wavelengths each.
     hold(Measurement("Effects", "light of an even sky with diffraction over that without",
                      " and ".join([f"{model} lens", *others]), "cpu", "float32",
                      float(abs(with_it.mean(axis=(0, 1)) / without.mean(axis=(0, 1)) - 1).max()),
@@ -161,10 +161,10 @@ def test_nothing_is_lost_of_a_lamp_that_rays_meet() -> None:
     r = radii(96, 20.0)
     far = (r > 200) & (r < 900)
     assert star.sum() == pytest.approx(seen.sum(), rel=0.02)
-    # Which falls as the cube of the distance: a lamp of that size has 1% more of it than a point.
+    # The starburst falls as the cube of the distance: that of a lamp of this size is 1% stronger than a point's.
     hold(Measurement("Effects", "starburst of a lamp that rays meet, against a point's", "f/16, 10 to 45 pixels away",
                      "cpu", "float32", abs(seen[far].sum() / star[far].sum() - 1), 0.03, ""))  # fmt: skip
-    # Of a circle, 2 / (pi^2 f) of the light is beyond f periods over its width: Airy's far rings.
+    # For a circular aperture, 2 / (pi^2 f) of the light lies beyond f periods over its width: Airy's far rings.
     periods = np.array([200, 900]) / (LINE_NM / 1000 * 16)
     expected = float(2 / np.pi**2 * (1 / periods[0] - 1 / periods[1]))
     hold(Measurement("Effects", "light of a starburst, against Airy's far rings", "f/16, 10 to 45 pixels away", "cpu",

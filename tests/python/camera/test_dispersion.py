@@ -41,7 +41,7 @@ def film_curves(nm: np.ndarray) -> np.ndarray:
 
 
 def quiet(scene: rc.Scene, camera: rc.Camera, **settings: object) -> rc.Image:
-    """A picture with dispersion, of a lens that may have none."""
+    """A picture with dispersion. Ignores warnings, because the lens may have no dispersion."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         return rc.render(scene, camera, effects={"dispersion"}, **settings)  # type: ignore[arg-type]
@@ -87,13 +87,13 @@ class Edge:
         return np.asarray((last - self.MIDDLE - share) * PITCH_MM)
 
     def whole(self) -> np.ndarray:
-        """(800, 1): what the film has of a field that is bright everywhere: a parabola, without its noise."""
+        """(800, 1): film irradiance under a uniform field, as a fitted polynomial, so without noise."""
         sky = rc.render(scenes.sky(), self.camera, effects=(), spp=64).pixels[..., 1].astype(np.float64).mean(axis=0)
         columns = np.arange(len(sky)) - self.MIDDLE
         return np.asarray(np.polyval(np.polyfit(columns, sky, 4), columns))[:, None]
 
     def traced(self, nm: float) -> float:
-        """Mean film place of rays of a wavelength from a point of the edge, mm to the right (pictures are turned)."""
+        """Mean film coordinate of rays from a point of the edge, in mm to the right (pictures are turned)."""
         n = 64
         ring, turn = np.sqrt((np.arange(n) + 0.5) / n), np.arange(n) * 2 * np.pi / n
         r = self.lens.stop_semi_diameter_mm * ring[:, None]
@@ -120,8 +120,8 @@ def test_lateral_colour_of_a_line_is_that_of_the_trace(edge: Edge, nm: float) ->
 
 
 def test_lateral_colour_of_white_light(edge: Edge) -> None:
-    """Each channel's edge is at the mean of the places of all wavelengths, by what they are to the channel. The
-    analytic observer is right to a percent, of a spread over two pixels."""
+    """Each channel's edge is the mean of the edges of all wavelengths, weighted by the channel's response. The analytic
+    observer has an error of one percent, for a spread over two pixels."""
     place = edge.places(quiet(edge.scene, edge.camera, spp=1024, max_bounces=0))
     nm = np.arange(390.0, 741.0, 10.0)
     traced = np.array([edge.traced(float(w)) for w in nm])
@@ -185,7 +185,7 @@ def test_colours_of_the_scene_stay_under_d65(grey_card: tuple[rc.Camera, np.ndar
     ("illuminant", "color"), [("A", (0.05, 0.05, 1)), ("FL2", (0.02, 1, 0.02)), ("D65", (1, 0.5, 0.1))]
 )
 def test_balanced_colours_are_right_in_the_mean(illuminant: str, color: tuple[float, float, float], spp: int) -> None:
-    """Against the same samples with nothing taken out of their chance."""
+    """The reference is the same samples without the control variates."""
     camera = rc.Camera(rc.Lens.load("double-gauss-50mm").stopped_down(4), film=rc.Film(24, 16, (72, 48)))
     scene = scenes.sky().with_environment(color)
     differences, means = [], []
@@ -237,14 +237,15 @@ def test_without_data_it_changes_nothing(name: str) -> None:
     camera = rc.Camera(lens, film=rc.Film(lens.film_mm[0], lens.film_mm[1], (48, 32)), exposure_time_s=1)
     plain = rc.render(busy_scene(), camera, effects=(), spp=256).pixels.astype(np.float64)
     seen = quiet(busy_scene(), camera, spp=256).pixels.astype(np.float64)
-    # The same paths, each by a third of the wavelengths that it could have: what differs is noise, and its mean zero.
+    # The same paths, each with a third of its possible wavelengths: the difference is noise of zero mean.
     assert seen.mean(axis=(0, 1)) == pytest.approx(plain.mean(axis=(0, 1)), rel=5e-3)
     assert np.sqrt(((seen - plain) ** 2).mean()) < 0.05 * plain.mean()
 
 
 def test_noise_where_colours_stay_in_a_pixel() -> None:
-    """What wavelengths add to the noise of RGB, as a share of the picture: one wavelength a sample alone adds 0.18.
-    Samples that count for three leave the part of each channel that three wavelengths miss, and the borders of pixels.
+    """Noise that wavelength sampling adds to RGB, relative to the picture: 0.18 with a single wavelength per sample.
+    With three wavelengths per sample, the remaining noise comes from the part of each channel that they miss and from
+    the borders of pixels.
     """
     lens = rc.Lens.load("double-gauss-100mm").focused(2.0)
     camera = rc.Camera(lens, film=rc.Film(36, 24, (48, 32)), exposure_time_s=1)

@@ -33,7 +33,7 @@ def listed_distortion(height: float, angle_deg: float, exit_angle_deg: float) ->
 
 
 def centroid(strip: np.ndarray, height_mm: float) -> tuple[float, float]:
-    """Mean place (along the columns, and upwards) of the light around a height on the film, mm."""
+    """Centroid (along the columns, and upwards) of the light around a height on the film, in mm."""
     rows, columns = strip.shape
     y = -(np.arange(rows) + 0.5 - rows / 2) * PITCH_MM
     near = np.abs(y - height_mm) < 1.0
@@ -64,10 +64,10 @@ def marks_at_both_angles() -> np.ndarray:
 def test_distortion_in_a_picture(marks_at_both_angles: np.ndarray, angle: float, sign: int) -> None:
     listed_height, exit_angle, distortion = CHIEF_RAYS[angle]
     x, y = centroid(marks_at_both_angles, sign * listed_height)
-    # What differs from a chief ray: the centroid is over a pupil of 1 / 11 of the full one, whose coma is
+    # Differences from a chief ray: the centroid is taken over a pupil of 1 / 11 of the full one, whose coma is
     # below 0.1 um (listed: 1.5 um over a pupil of 0.31), and over a mark of 0.4 mm, over which the
-    # third-order distortion changes by 0.02 um. The 25600 samples of a mark, stratified over its pixels, have
-    # 0.115 mm / sqrt(25600) = 0.7 um at most; three of them are 0.0120% of 17.5 mm.
+    # third-order distortion changes by 0.02 um. The 25600 samples of a mark, stratified over its pixels, have a
+    # standard error of 0.115 mm / sqrt(25600) = 0.7 um at most; three standard errors are 0.0120% of 17.5 mm.
     assert sign * y == pytest.approx(listed_height, abs=0.002)
     assert listed_distortion(sign * y, angle, exit_angle) == pytest.approx(distortion, abs=0.012)
     assert x == pytest.approx(0, abs=0.002)

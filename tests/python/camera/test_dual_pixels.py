@@ -42,10 +42,10 @@ def disparity_mm(image: rc.Image) -> float:
 
 
 def disparity_of_rays_mm(lens: rc.Lens, distance_m: float) -> float:
-    """The same of rays from a point on the axis, traced in double, sorted by where they cross the exit pupil."""
+    """Disparity of rays from a point on the axis, traced in double, sorted by where they cross the exit pupil."""
     data = lens.first_order()
     source_z = lens.film_position_mm - 1000 * distance_m
-    # Places all over the entrance pupil. Seen from the point, they have the same light but for the cosines, 1e-3.
+    # Points all over the entrance pupil. They receive the same light from the point but for the cosines, 1e-3.
     side = np.linspace(-0.55, 0.55, 201) * data.entrance_pupil_diameter_mm
     x, y = (values.ravel() for values in np.meshgrid(side, side))
     to_pupil = np.stack([x, y, np.full_like(x, data.entrance_pupil_position_mm - source_z)], axis=1)
@@ -65,7 +65,7 @@ def disparity_of_rays_mm(lens: rc.Lens, distance_m: float) -> float:
 def test_disparity_over_defocus_is_that_of_ray_centroids(distance_m: float, device: str) -> None:
     seen_by = camera()
     wanted = disparity_of_rays_mm(seen_by.lens, distance_m)
-    # What is farther than the focus has the light of the right half on the right.
+    # For an object beyond the focus distance, the image in the layer dual_pixel_right lies further to the right.
     assert (wanted > 0) == (distance_m > FOCUS_M)
     found = disparity_mm(photograph(lamp(distance_m), seen_by, spp=256, device=device))
     # 1e5 samples, of an image some tenths of a millimetre wide, leave 1e-3 mm or less of 0.2 mm.
@@ -86,9 +86,9 @@ def test_left_and_right_are_the_whole(effects: tuple[str, ...], device: str) -> 
     image = photograph(scene, seen_by, effects=effects, device=device)
     left, right = (image.layers[name].astype(float) for name in HALVES)
     assert left + right == pytest.approx(image.pixels.astype(float), rel=1e-6)
-    # A quarter of the samples of the test above; dispersion has other colours at other places, which blurs little.
+    # A quarter of the samples of the test above. Dispersion shifts colours by different amounts, which blurs little.
     assert disparity_mm(image) == pytest.approx(disparity_of_rays_mm(seen_by.lens, 2.5), rel=0.05)
-    # With another layer for which samples of dispersion count in their own pixels alone, too.
+    # The picture equals that with another layer for which dispersion shares no samples among pixels.
     without = photograph(scene, seen_by, effects=effects, layers=("variance",), light_tracing="off", device=device)
     if device == "cpu":
         assert np.array_equal(image.pixels, without.pixels)
@@ -148,7 +148,7 @@ def test_what_has_no_halves_says_so(changes: dict[str, Any], model: str, message
 def wall(distance_m: float, period_m: float = 0.02) -> rc.Scene:
     """Upright stripes, white and black, before the camera."""
     edges = np.arange(-0.5, 0.5, period_m)
-    # Not periodic: a match one period off would be as good.
+    # The stripes are not periodic; otherwise a match one period off would be equally good.
     halves = period_m * (0.15 + 0.2 * (np.arange(len(edges)) * 7 % 11) / 11)
     stripes = [scenes.quad((x + w, 0, -distance_m), w, 1, emission=500) for x, w in zip(edges, halves, strict=True)]
     return scenes.scene_of(*stripes)

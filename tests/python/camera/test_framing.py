@@ -1,4 +1,4 @@
-"""What a photographer decides before the picture: film, framing, light and exposure, and what the camera takes in."""
+"""Choices before exposure: film, framing, light and exposure, and the field that the camera covers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ghosts in pictures: where first order puts them, as much light as an independent sum, and none where none can be."""
+"""Ghosts in pictures: first-order positions, flux against an independent sum, and cases without any ghosts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FILM = rc.Film(24, 24, (96, 96))
 
 
 def far_lamp(tangent_x: float, tangent_y: float, distance_m: float = 1e4, brightness: float = 1.0) -> rc.Scene:
-    """A small lamp of so many lux at the camera, at these tangents to the axis; nothing else."""
+    """A point light that gives `brightness` lux at the camera, in the direction with these tangents to the axis."""
     behind = np.array([[0.0, 0.0, 1e5], [1.0, 0.0, 1e5], [0.0, 1.0, 1e5]])
     place = (tangent_x * distance_m, tangent_y * distance_m, -distance_m)
     lux = brightness * float(np.dot(place, place))
@@ -52,7 +52,8 @@ def singlet(stop_mm: float) -> rc.Lens:
 
 
 def paraxial_film_height(lens: rc.Lens, height: float, slope: float) -> float:
-    """Of a ray that back and front reflect: n'u' = nu - yc(n' - n), the index negative on the way back."""
+    """Film height of a paraxial ray reflected at the back face, then the front face: n'u' = nu - yc(n' - n), with a
+    negative index while the ray travels backwards."""
     n = 1.6
     front, back = (surface.curvature_per_mm for surface in lens.surfaces[1:])
     way = [(front, 1, n, 6.0), (back, n, -n, -6.0), (front, -n, n, 6.0), (back, n, 1, lens.film_distance_mm)]
@@ -196,7 +197,7 @@ def test_all_pairs_of_a_double_gauss_and_a_film_bring_as_much_light_as_an_indepe
 
 @pytest.mark.parametrize("wavelength_nm", [400.0, 450.0, 650.0])
 def test_ghosts_under_a_line_have_the_reflectances_of_that_line(wavelength_nm: float) -> None:
-    """Of a singlet and a window of glass that disperses much."""
+    """Ghosts of a singlet and a highly dispersive window."""
 
     def lens_for(nm: float) -> rc.Lens:
         surfaces = [
@@ -235,7 +236,7 @@ def ghosts_of_boards(
 
 @pytest.mark.parametrize("effects", [set(), {"dispersion", "film_reflection"}])
 def test_what_reflects_light_has_the_ghosts_of_what_emits_it(effects: set[str]) -> None:
-    """Those are traced from the film, these from the light: two ways of computing the same."""
+    """Ghosts of reflecting surfaces are traced from the film, those of emitters from the light source."""
     lens = rc.Lens.load("double-gauss-50mm").with_coating("bare").focused(5.0)
     camera = rc.Camera(lens, film=FILM, exposure_time_s=1)
     pictures = ghosts_of_boards(camera, (0.3, 0.2, -3.0), 512, effects)
@@ -243,8 +244,8 @@ def test_what_reflects_light_has_the_ghosts_of_what_emits_it(effects: set[str]) 
     hold(Measurement("Effects", "ghosts of a board that reflects light against those of one that emits it",
                      " and ".join(["light", *sorted(effects)]), "cpu", "float32",
                      abs(reflected.sum() / emitted.sum() - 1), 0.01, ""))  # fmt: skip
-    # Five standard deviations of these means, the largest of which was seen to be 1.2% of 1024 samples over a few
-    # seeds: 1.7% of 512.
+    # Five standard deviations of these means. The largest standard deviation over a few seeds was 1.2% for 1024
+    # samples, which is 1.7% for 512.
     np.testing.assert_allclose(reflected, emitted, atol=0.085 * emitted.max())
     assert emitted.min() < 0.5 * emitted.max()
 

@@ -28,7 +28,7 @@ def test_light_falls_off_as_through_the_real_lens(name: str) -> None:
         for model in ("full", "mapped")
     )
     error = np.abs(mapped - full).max() / full.max()
-    # 4096 samples of a pupil of which some percent is blocked, whose noise is a thousandth, and as many of the map.
+    # 4096 samples of a pupil that is vignetted by some percent have a noise of 0.1%; the map uses as many samples.
     hold(Measurement("Lenses", "light that a mapped lens brings to each pixel, of the real lens's", name, "cpu",
                      "float32", float(error), 0.006, "of the brightest"))  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""What moves while the shutter is open: streaks against closed forms, and motion against the mean of many stills."""
+"""Motion while the shutter is open: streaks against closed forms, and motion against the mean of many stills."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def camera(**options: object) -> rc.Camera:
 
 
 def metres_per_pixel(cam: rc.Camera, depth_m: float) -> float:
-    """In a plane so far in front of the entrance pupil, on the axis."""
+    """Width of a pixel in a plane at this depth in front of the entrance pupil, on the axis."""
     return 2 * depth_m * np.tan(np.radians(cam.field_of_view_deg.horizontal) / 2) / cam.film.resolution[0]
 
 
@@ -72,8 +72,8 @@ def test_a_streak_is_as_long_as_its_way(device: str) -> None:
     row = pixels_of(scene, cam, device)[28:36].mean(axis=0)
     row /= row[46:50].mean()
 
-    # Share of the exposure during which a place is covered, at the middles of fine parts of each pixel. It is exact
-    # to the field's falling brightness, which is 1% here, and to the noise of 8 rows of 256 samples.
+    # Share of the exposure during which a point is covered, at the centres of fine subdivisions of each pixel. Errors
+    # are the falloff of the field's brightness, 1% here, and the noise of 8 rows of 256 samples.
     place = (np.arange(96 * 64) + 0.5) / 64 - 48
     covered = np.clip(np.minimum(place + 10 + 8, 10 + 8 - place) / 16, 0, 1).reshape(96, 64).mean(axis=1)
     np.testing.assert_allclose(row, covered, atol=0.02)
@@ -90,7 +90,7 @@ def test_a_fan_turns_at_an_even_pace_along_arcs(device: str) -> None:
     y, x = np.mgrid[31.5:-32.5:-1, -31.5:32.5]
     radius, direction = np.hypot(x, y), np.degrees(np.arctan2(y, x))
     ring = np.abs(radius - 20) < 4
-    # At radius r the blade of width 3 covers an angle of 3 / r, of 120 degrees that it passes through.
+    # At radius r the blade of width 3 subtends an angle of 3 / r and sweeps 120 degrees.
     still = pixels_of(NOTHING.with_instance(lit_area(2), shifted(z=z)), cam, device)
     inside = ring & (direction > 10) & (direction < 110)
     expected = 2 * np.arcsin(1.5 / radius[inside]) / angle
@@ -99,7 +99,7 @@ def test_a_fan_turns_at_an_even_pace_along_arcs(device: str) -> None:
     for low in range(10, 110, 20):
         part = inside & (direction > low) & (direction < low + 20)
         share = 2 * np.arcsin(1.5 / radius[part]) / angle
-        # Noise of a part: some 90 pixels of 1024 samples of which 7% are lit, 1.2%.
+        # Noise of a sector: about 90 pixels of 1024 samples, 7% on the blade, give 1.2%.
         assert (picture / still)[part].sum() == pytest.approx(share.sum(), rel=0.05), low
     assert picture[ring & ((direction > 130) | (direction < -12))].max() == 0
 

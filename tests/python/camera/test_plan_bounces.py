@@ -50,8 +50,8 @@ def test_a_furnace_has_as_many_as_its_series(albedo: float, device: str) -> None
     def lacks(n: int) -> float:
         return max(code(whole) - code(whole * (1 - albedo ** (n + 2))) for whole in squares.ravel())
 
-    # It wants half a code. Some squares of the small picture find too much of the light, where roulette lets few paths
-    # go on, so that it may be two steps too many, and the largest of 288 sizes is too large by a few percent.
+    # The plan aims at half a code. In the small picture some squares overestimate the light, where roulette lets few
+    # paths go on, so that it may be two steps too many, and the largest of 288 sizes is too large by a few percent.
     assert lacks(chosen) < 1
     steps = [0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 64]
     least = next(n for n in steps if lacks(n) < 0.5)
@@ -89,7 +89,7 @@ def test_no_path_ends_inside_glass_or_between_mirrors(scene: object, device: str
         for n in ("auto", 64, 1)  # type: ignore[arg-type]
     )
     squares = [np.vectorize(code)(p.reshape(8, 4, 12, 4, 3).mean(axis=(1, 3))) for p in (planned, all_light, one)]
-    # The same paths: what is between them is light of more bounces alone, to which 4096 samples add little noise.
+    # The paths are the same: the difference is light of further bounces, with little noise at 4096 samples.
     assert np.abs(squares[0] - squares[1]).max() < 1
     assert np.abs(squares[2] - squares[1]).max() > 2
 
@@ -111,7 +111,7 @@ def test_what_is_no_number_of_bounces_is_refused() -> None:
 
 
 def test_all_frames_of_a_film_have_the_same_bounces() -> None:
-    """Also where the effects are named."""
+    """The planned max_bounces is shared by all frames even if the effects are given explicitly."""
     scene = box(3, 6 * [rc.Material(diffuse=(0.5,) * 3, emission=(1.0,) * 3)])
     film = rc.Shot(scene, camera(), rc.RenderSettings(effects=(), spp=1)).frames([1, 2, 3], device="cpu")
     chosen = {frame.settings.max_bounces for frame in film.values()}

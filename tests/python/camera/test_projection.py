@@ -52,7 +52,7 @@ def test_a_point_on_a_pixels_ray_shows_in_the_pixel() -> None:
                 assert (status[~lit] == rc.ProjectionStatus.BAD_INPUT).all()
                 worst[through] = max(worst[through], float(np.abs(seen[lit] - pixels[lit]).max()))
                 tried += int(lit.sum())
-    # What is left is the rounding of coordinates of metres: 1e-16 m over a pixel of 1e-6 m or more.
+    # The remaining error is the rounding of coordinates in metres: 1e-16 m over a pixel of 1e-6 m or more.
     for through, error in worst.items():
         hold(Measurement("Computer vision", f"`project` of a point on the line of `ray`, through {through}",
                          f"every fourth bundled lens and a fisheye, some stopped down, of {tried} pixels and distances",
@@ -68,7 +68,7 @@ def test_chief_rays_are_those_of_the_analysis(name: str) -> None:
     for angle in np.linspace(1, widest, 7):
         chief = camera.lens.spot(angle, object_distance_m=np.inf).chief_ray_mm
         radians = np.radians(angle)
-        # As far away as the sun, so that the point lies in one direction from all of the lens.
+        # The point is as far away as the sun, so that its direction is the same from every point of the lens.
         point = 1.5e11 * np.array([np.sin(radians), 0, -np.cos(radians)])
         (pixel,) = camera.project([point], through="chief")
         # The table of lines is interpolated by cubics between 128 radii.
@@ -160,14 +160,14 @@ def test_what_is_not_imaged_says_why(tilt_deg: float) -> None:
     S = rc.ProjectionStatus
     assert status.tolist() == [S.OK, S.BEHIND, S.OUTSIDE_PICTURE, S.OUTSIDE_PICTURE, S.BAD_INPUT, S.BAD_INPUT, S.BEHIND]
     assert np.isnan(pixels[[1, 3, 4, 5, 6]]).all()
-    # A film larger than the image circle: the lens lets nothing through from so far beside the axis.
+    # A film larger than the image circle: the lens passes no light from a point so far off the axis.
     large = camera.replace(film=rc.Film(200, 200, (100, 100)))
     assert large.project([(0, 3, -1)], return_status=True)[1].tolist() == [S.BLOCKED]
     assert np.isnan(large.ray([(0, 0)])[1]).all()
     if tilt_deg:
         return
     assert pixels[0] == pytest.approx([480, 320], abs=1e-9)
-    # Beside the picture, but nearer to its middle than the corners: a place, and a status that says so.
+    # Outside of the picture, but closer to its centre than the corners: pixel coordinates, with a status that says so.
     origin, direction = camera.ray([(480, -20)])
     pixels, status = camera.project(origin + 3 * direction, return_status=True)
     assert pixels[0] == pytest.approx([480, -20], abs=1e-6) and status[0] == S.OUTSIDE_PICTURE
@@ -193,7 +193,7 @@ def test_a_rolling_shutter_sees_each_row_at_its_time() -> None:
     still, _ = camera.replace(motion=[], position=(0, 0, 0), look_at=(0, 0, -1)).ray(pixels)
     lit = ~np.isnan(origins[:, 0])
     assert origins[lit, 0] == pytest.approx(still[lit, 0] + 10 * (0.02 * rows / 640 + 0.001)[lit], abs=1e-12)
-    # Rows of pixels see the scene at one time each, so that a place on the border of two may go to either.
+    # Each row of pixels is exposed at one time, so that a point on the border of two rows may be assigned to either.
     middles = np.floor(pixels) + 0.5
     origins, directions = camera.ray(middles)
     seen = camera.project(origins + 2 * directions)

@@ -29,17 +29,17 @@ def camera_of(lens: rc.Lens, **others: object) -> rc.Camera:
 
 
 def in_lens(lens: rc.Lens, points_m: np.ndarray) -> np.ndarray:
-    """From the camera with the default pose, whose position is the middle of the film; mm."""
+    """Points in the lens frame, in mm, for a camera with the default pose, whose position is the film centre."""
     return 1000 * points_m + np.asarray(lens.film_frame[3])
 
 
 def landing(camera: rc.Camera, origins_mm: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """Where rays behind the lens meet the film, in pixels."""
+    """Pixel coordinates at which rays behind the lens hit the film."""
     lens, pixels = camera.lens, np.array(camera.film.resolution)
     axes, vertex = np.asarray(lens.film_frame[:3]), np.asarray(lens.film_frame[3])
     o, d = (origins_mm - vertex) @ axes.T, directions @ axes.T
     c = 1 / lens.film_radius_of_curvature_mm
-    # o + t d on the sphere c r^2 = 2 z, the cap that the light meets.
+    # o + t d on the sphere c r^2 = 2 z, on the cap that the light reaches.
     f = c * np.sum(o * o, axis=1) - 2 * o[:, 2]
     g = d[:, 2] - c * np.sum(o * d, axis=1)
     film = (o + (f / (g + np.sqrt(g * g - c * f)))[:, None] * d)[:, :2]
@@ -79,7 +79,7 @@ def test_a_point_on_a_pixels_ray_shows_in_the_pixel(what: str, through: str) -> 
     for distance in (1.5, 3.0, 1e4):
         seen, status = camera.project(origins + distance * directions, through=through, return_status=True)
         assert (status[lit] == rc.ProjectionStatus.OK).all()
-        # What is left is the rounding of coordinates: 1e-16 of them over a pixel of 2.5e-5 m.
+        # The remaining error is the rounding of coordinates: a relative 1e-16 over a pixel of 2.5e-5 m.
         assert np.abs(seen[lit] - pixels[lit]).max() < 1e-6
 
 
@@ -88,7 +88,7 @@ def test_lines_go_over_into_those_of_a_lens_of_revolution() -> None:
     there, here = camera_of(DOUBLE_GAUSS), camera_of(nearly)
     pixels = grid(there)
     for through, limit_mm in (("chief", 2e-6), ("light", 1e-3)):
-        # Where rims begin to cut the light its mean bends, which the coarser table rounds off.
+        # The centroid ray changes slope where rims begin to vignette; the coarser table smooths this.
         origins, directions = there.ray(pixels, through=through)
         found = here.project(origins + 5 * directions, through=through)
         assert np.abs(found - pixels).max() / 40 < limit_mm
@@ -129,7 +129,7 @@ def test_a_picture_shows_a_lamp_where_it_is_projected(what: str) -> None:
     camera = rc.Camera(lens, film=rc.Film(22, 16, (176, 128)), position=(2, -1, 4), look_at=(-1, 0.5, 2), up=(0, 1, 0))
     focus = lens.focus_distance_m if math.isfinite(lens.focus_distance_m) else 50.0
     shown, projected = shown_and_projected(camera, (60.3, 90.7), focus, 128)
-    # The centroid of a spot out of focus lies up to 2% of its width beside; noise is a fiftieth of a pixel.
+    # The centroid of a defocused spot is off by up to 2% of its width; the noise is a fiftieth of a pixel.
     assert shown == pytest.approx(projected, abs=0.15)
 
 

@@ -16,14 +16,14 @@ def camera(model: str = "full") -> rc.Camera:
 
 
 def light(device: str, model: str = "full", **settings: object) -> rc.Image:
-    """Of a sky that is the same everywhere: what differs is what the lens lets pass."""
+    """Picture of a uniform sky, so that pixels differ only by the transmitted light of the lens."""
     return rc.render(scenes.sky(), camera(model), effects=(), spp=256, device=device, **settings)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("sampling", ["rear_element", "pixel"])
 def test_no_light_is_lost_wherever_rays_are_sent(device: str, sampling: str) -> None:
-    """A sixth or more of the rays to the last surface pass: 262144 of them tell the mean to 0.5%, three times that is
-    allowed in the corner's quarter of the picture."""
+    """At least a sixth of the rays to the last surface pass: 262144 of them give the mean to 0.5%. Three times that is
+    allowed, and 3% in the corner's quarter of the picture."""
     expected, found = light(device).pixels, light(device, pupil_sampling=sampling).pixels
     assert found.mean() == pytest.approx(expected.mean(), rel=0.015)
     assert found[:16, :16].mean() == pytest.approx(expected[:16, :16].mean(), rel=0.03)
@@ -57,7 +57,7 @@ def test_double_precision_shows_the_same_picture() -> None:
 
 
 def test_polynomials_show_the_light_of_the_lens(device: str) -> None:
-    """They know the rims of stop, first and last surface only; others of this lens cut off less than 3%."""
+    """Polynomials include the rims of stop, first and last surface only; this lens's other rims block less than 3%."""
     assert light(device, "polynomial").pixels.mean() == pytest.approx(light(device).pixels.mean(), rel=0.03)
 
 

@@ -57,7 +57,7 @@ def test_a_tilted_lens_does_what_the_lens_does_with_turned_rays(pivot):
     ok = truth.status == 0
     assert np.array_equal(ok, traced.status == 0)
     assert np.abs(traced.directions[ok] - truth.directions[ok] @ turn.T).max() < 1e-12
-    # The same line: what lies between the two points on it goes along it.
+    # Both points lie on the same line: the vector between them is parallel to the direction.
     apart = traced.origins_mm[ok] - ((truth.origins_mm[ok] - about) @ turn.T + about)
     assert np.abs(np.cross(apart, traced.directions[ok])).max() < 1e-10
 
@@ -112,8 +112,8 @@ def test_the_irradiance_of_a_tilted_lens_is_the_integral_over_its_pupil(height):
     film = Film(1e-3, 1e-3, (1, 1), shift_mm=(5, height))
     rays = Camera(lens, film=film).generate_rays(spp=1 << 16)
     at = np.array([-5, -height, lens.film_position_mm])  # the film's axes point against the picture's
-    # 700 x 700 cells, of which those at the rim of a region of 0.4 across are counted or not: 0.2%. As much of the
-    # samples' own noise, of which some 5% do not pass.
+    # A grid of 700 x 700 rays, in which rays at the rim of a region 0.4 wide are counted or not: 0.2%. The noise of the
+    # samples, about 5% blocked, is as large.
     assert rays.weights.mean() == pytest.approx(passing_area(lens, at, np.eye(3)), rel=5e-3)
 
 

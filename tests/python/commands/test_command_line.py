@@ -24,7 +24,7 @@ from ..programs import PROGRAM
 
 BENCHMARKS = Path(rc.__file__).resolve().parents[2] / "benchmarks"
 wants_benchmarks = pytest.mark.skipif(not BENCHMARKS.is_dir(), reason="a wheel comes without the benchmarks")
-# As the script that pip installs calls it.
+# The same call as in the script that pip installs.
 PYTHON_COMMAND = [sys.executable, "-c", "from realcam_command.main import main; main()"]
 
 TREE = typer.main.get_command(cli.app)
@@ -38,7 +38,7 @@ pictures = pytest.mark.picture_files  # a build without picture files has none o
 
 
 def commands(command: Any = TREE, words: tuple[str, ...] = ()) -> Iterator[str]:
-    """All that are Python, and the groups."""
+    """Names of all commands written in Python, and of the command groups."""
     name = " ".join(words)
     if name not in IN_CPP:
         yield name
@@ -62,7 +62,7 @@ def python(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -
 
 @pytest.fixture
 def cpp(capfd: pytest.CaptureFixture[str]) -> Said:
-    """The same of a command in C++, in this process: one of its own takes a quarter of a second to start."""
+    """Runs a command in C++ within this process, because a process of its own takes a quarter of a second to start."""
 
     def run_here(words: str) -> tuple[int, str, str]:
         code = rc._core._run_command([os.fsencode(word) for word in shlex.split(words)])  # type: ignore[attr-defined]
@@ -162,7 +162,7 @@ def test_mistyped_words(words: str, meant: str, python: Said) -> None:
 @pictures
 @pytest.mark.parametrize("name", IN_CPP)
 def test_help_has_one_form(name: str, python: Said, cpp: Said) -> None:
-    """What Python would print of a command in C++ is what C++ prints, but for groups of options."""
+    """For a command in C++, the help that Python would print is the help that C++ prints, but for option groups."""
     text = python(f"{name} --help")[1]
     printed = cpp(f"{name} --help")[1].partition("\nExamples:\n")[0]
 
@@ -192,7 +192,7 @@ def test_help_has_one_form(name: str, python: Said, cpp: Said) -> None:
     ],
 )
 def test_mistakes_are_told_in_the_same_words(words: str, python: Said, cpp: Said) -> None:
-    """By a command in Python, and by one in C++ with the same options."""
+    """Compares a command in Python with one in C++ that has the same options."""
     errors = refusal(python(f"lens photo {words}"))
     assert errors.replace("lens photo", "lens info") == refusal(cpp(f"lens info {words}"))
 
@@ -231,7 +231,7 @@ def test_a_shell_completes_the_command_that_pip_installs() -> None:
 
 
 def test_bench_says_where_the_benchmarks_are(tmp_path: Path, python: Said, monkeypatch: pytest.MonkeyPatch) -> None:
-    # As installed: the package alone.
+    # An installed package lies outside of the repository.
     monkeypatch.setattr("realcam.cli.bench.__file__", str(tmp_path / "site-packages/realcam/cli/bench.py"))
     errors = refusal(python("bench frame"))
     assert "source repository" in errors and "./run bench" in errors
@@ -242,7 +242,7 @@ def test_bench_says_where_the_benchmarks_are(tmp_path: Path, python: Said, monke
     "words, meant",
     [
         ("render scene.glb -o a.png --exposur-time=1/50", 'option --exposur-time (did you mean "--exposure-time"'),
-        # Also where something else is missing.
+        # Unknown options are reported even if a required one is missing, too.
         ("render scene.glb --outptu a.png", 'option --outptu (did you mean "--output"'),
         ("render --f-numbr 8", '(did you mean "--f-number"'),
         ("render scene.glb", "--output is required (realcam render --help lists the options)"),
@@ -273,7 +273,7 @@ def test_mistyped_words_for_what_is_in_cpp(words: str, meant: str, cpp: Said) ->
 
 
 def render(folder: Path, *words: object, scene: str = "quad.obj") -> tuple[dict[str, Any], str]:
-    """The figures of a small picture, and what was told on the way."""
+    """Renders a small picture. Returns the JSON figures and the text on stderr."""
     (folder / "quad.obj").write_text(QUAD)
     settings = ["--resolution", "48x32", "--device", "cpu", "--effects", "none", "--json"]
     done = run("render", scene, "-o", "a.png", *settings, *words, folder=folder)
@@ -322,7 +322,7 @@ def test_without_a_number_of_samples_the_noise_and_the_time_decide(tmp_path: Pat
         assert (image["noise"]["wanted"], image["noise"]["unit"]) == (2, "codes")
         assert image["noise"]["is_reached"]
         assert aim.format("2 codes of 255, for 60 s at most") in told
-    # Who says what noise is wanted waits for it; who says how long, has the usual noise.
+    # A noise goal alone has no time limit; a time limit alone keeps the default noise goal.
     assert aim.format("3 codes of 255") in figures("quad.obj", "--noise-codes", 3)[1]
     assert aim.format("10% of the light, for 9 s at most") in figures("shot.toml", "--noise", 0.1, "--seconds", 9)[1]
     assert aim.format("2 codes of 255, for 9 s at most") in figures("shot.toml", "--seconds", 9)[1]
@@ -349,7 +349,7 @@ def test_noise_and_time_that_are_out_of_reach_end_with_one_line(tmp_path: Path) 
 @pytest.mark.slow
 @pictures
 def test_pictures_that_show_nothing_are_told(tmp_path: Path) -> None:
-    """By how many stops, and what to change: the figures of the metered picture give both."""
+    """The message states the number of stops and the remedy, from the figures of the metered picture."""
     light = ["--spp", 4, "--environment", "100"]
     metered, told = render(tmp_path, *light)
     assert "nearly all" not in told
@@ -444,7 +444,7 @@ def test_sensors_as_json(python: Said) -> None:
 
 
 def test_all_commands_that_write_can_be_quiet() -> None:
-    """Of C++ `render` can, which has a test of its own."""
+    """The C++ commands are left out here; `render --quiet` in C++ has a test of its own."""
     for name in sorted(commands()):
         command: Any = TREE
         for word in name.split():

@@ -150,7 +150,7 @@ def test_mistakes_have_a_hint_in_one_line(words: str, told: str, command: Comman
 
 @pictures
 def test_units_reach_all_commands(command: Command) -> None:
-    """Those in C++ and in Python, by the figures that they print."""
+    """Commands in C++ and in Python are compared by the figures that they print."""
     info = command("lens", "info", "tessar-50mm", "--f-number", "f/4", "--focus", "50cm").stdout
     assert info == command("lens", "info", "tessar-50mm", "--f-number", "4", "--focus", "0.5").stdout
     photo = ("lens", "photo", "tessar-50mm", "--f-number")
@@ -183,7 +183,7 @@ def test_a_bundled_shot_has_a_name(command: Command, folder: Path) -> None:
     assert rc.Scene.load("demo").triangle_count == shot.scene.triangle_count
     with pytest.raises(rc.ArgumentError, match="load\\(\\) has no argument scal; is scale meant"):
         rc.Scene.load("demo", scal=2)  # type: ignore[call-arg]
-    # What lies here under this name comes first, for all of them.
+    # A file or folder of this name in the current folder takes precedence over the bundled shot, for every loader.
     (folder / "demo").mkdir()
     for refused in (rc.Shot.load, rc.Scene.load):
         with pytest.raises(rc.RealcamError, match="demo"):
@@ -217,7 +217,7 @@ def test_all_pictures_of_a_comparison_have_an_f_number(command: Command) -> None
     assert done.returncode == 0, done.stderr
     labels = re.findall(r"^(\S+), .* mm, f/([\d.]+), from", done.stdout, re.M)
     assert labels == [("tessar-50mm", "4"), ("heliar-100mm", "4.5")]  # which has no wider opening
-    # As bright as the shot: 0.025 s at f/2.1.
+    # The exposure equals that of the shot: 0.025 s at f/2.1.
     times_s = [float(text) for text in re.findall(r", ([\d.]+) s,", done.stdout)]
     assert times_s == pytest.approx([0.025 * (n / 2.1) ** 2 for n in (4, 4.5)], rel=0.01)
     assert "--f-number cannot be combined with --vary f_number" in command(*sheet, "--vary", "f_number=2,4").stderr

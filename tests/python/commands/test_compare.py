@@ -37,7 +37,7 @@ def shot_file(tmp_path: Path) -> Path:
 
 
 def edges_px(camera: rc.Camera) -> np.ndarray:
-    """Where two points of the subject are in the picture, 0.4 m to both sides of the axis."""
+    """Horizontal pixel coordinates of two points of the subject, 0.4 m to both sides of the axis."""
     right = np.array([0.8, 0.0, -0.6])
     return camera.project(np.stack([-0.4 * right, 0.4 * right]), through="chief")[:, 0]
 
@@ -103,7 +103,7 @@ def test_a_sheet_has_every_pixel_of_its_pictures(tmp_path: Path) -> None:
     width = image.depth.shape[1]
     assert 2 * width < sheet.shape[1] < 2.5 * width + 80
     codes = image.developed()
-    # Where a row of the sheet has the picture's first row, all its rows follow.
+    # Wherever a row of the sheet equals the picture's first row, all the picture's rows follow.
     starts = [
         (y, x)
         for y in range(sheet.shape[0] - len(codes) + 1)

@@ -18,7 +18,7 @@ def run(*command: object) -> str:
 
 
 def forget_what_was_moved(folder: Path) -> str:
-    """What ./run does before it sets up; `help` only defines its functions. Returns what it says."""
+    """Runs the clean-up that ./run does before it sets up (`help` only defines its functions). Returns the output."""
     return run("bash", "-c", 'source "$0" help && forget_what_was_moved build/dev', folder / "run")
 
 
@@ -48,7 +48,7 @@ def is_set_up(folder: Path) -> bool:
 
 
 def test_a_folder_that_stayed_keeps_its_build(built: Path) -> None:
-    """By its own path and by a link."""
+    """The folder is given by its own path and by a link."""
     link = built.with_name("link")
     link.symlink_to(built)
     for path in (built, link):

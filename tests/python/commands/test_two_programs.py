@@ -58,15 +58,15 @@ def content(path: Path) -> bytes:
 
 
 def meaning(path: Path) -> tuple[object, ...]:
-    """All bytes of the pixels, and what the file says of them, whichever version of OpenImageIO wrote it."""
+    """Size, pixel bytes and metadata of a picture file, without the entries that depend on the OpenImageIO version."""
     picture = oiio.ImageInput.open(str(path))
     spec = picture.spec()
     pixels = {}
     for i, name in enumerate(spec.channelnames):
-        # As they are in the file: nothing is converted.
+        # Channels are read in the file's own type, without conversion.
         type_name = str(spec.channelformat(i))
         pixels[name] = (type_name, picture.read_image(0, 0, i, i + 1, type_name).tobytes())
-    # Of each library's own are the time, its colour space's name, and how rows are packed.
+    # These entries differ by library: the time, the name of the colour space, and how rows are packed.
     own = {"DateTime", "oiio:ColorSpace", "openexr:chunkCount", "oiio:RowsPerChunk"}
     says = {entry.name: entry.value for entry in spec.extra_attribs if entry.name not in own}
     return spec.width, spec.height, pixels, says
@@ -140,7 +140,7 @@ PICTURES: dict[str, tuple[str, int, dict[str, object]]] = {
 @wants_executable
 @pytest.mark.parametrize("name", PICTURES)
 def test_both_libraries_read_the_same_of_a_picture(folder: Path, name: str) -> None:
-    """As a texture and as light from all sides; the pixels of what is rendered are the same to the last bit."""
+    """The picture serves as a texture and as an environment; the rendered pixels agree to the last bit."""
     dtype, channels, wishes = PICTURES[name]
     pixels = np.random.default_rng(7).random((70, 50, channels))
     if dtype != "float32":

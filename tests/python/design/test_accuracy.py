@@ -1,4 +1,4 @@
-"""What accuracy costs: the levels, their errors, and what is said of them."""
+"""Cost of the accuracy levels: the levels, their errors, and how they are reported."""
 
 from __future__ import annotations
 
@@ -185,7 +185,7 @@ def test_blur_after_the_fact_has_the_size_of_the_disc(filter_: str) -> None:
 
 
 def test_what_is_sharp_is_not_blurred_by_what_lies_behind() -> None:
-    """The gather filter's rule; heat stops at what conducts none."""
+    """Both filters hold it: the gather filter by its rule, and diffusion because a sharp pixel conducts no heat."""
     picture, diameters, depth = np.zeros((32, 32, 3), np.float32), np.zeros((32, 32)), np.ones((32, 32))
     picture[:, 16:], diameters[:, 16:], depth[:, 16:] = 1, 6, 10
     for blurred in (gathered(picture, diameters.astype(np.float32), depth), diffused(picture, diameters)):

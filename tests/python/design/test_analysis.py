@@ -59,7 +59,7 @@ def test_every_plot_has_labels_and_units(computed: dict[str, object], number: in
     assert abs(sum(page) - sum(ink)) > 1.8, "the text stands out from the page"
 
 
-# Of each plot: the number of the axes, the number of the line, x (0) or y (1), and what the line shows there.
+# For each plot: index of the axes, index of the line, coordinate (0: x, 1: y), and the values that the line shows.
 LINES: dict[str, tuple[int, int, int, Callable[..., np.ndarray]]] = {
     "ray-fan": (1, 2, 1, lambda fan: 1e3 * fan.tangential_mm[1, 2]),
     "spot": (2, 0, 1, lambda spots: 1e3 * spots.points_mm[0, 2, 0, :, 1]),
@@ -97,7 +97,7 @@ def test_colours_and_surfaces_are_named(computed: dict[str, object]) -> None:
         legends = [legend for axes in analysis.plot_figure(kind, computed[kind]).axes if (legend := axes.get_legend())]
         assert "486.1 nm" in [text.get_text() for legend in legends for text in legend.get_texts()], kind
     ticks = analysis.plot_figure("seidel", computed["seidel"]).axes[0].get_xticklabels()
-    # As `lens info` and lens files number them.
+    # Surface numbers are those of `lens info` and of lens files.
     assert [tick.get_text() for tick in ticks] == [*map(str, range(1, 1 + len(LENS.surfaces))), "sum"]
     assert "0°" in analysis.plot_figure("zernike", computed["zernike"]).axes[0].get_title()
 
@@ -183,8 +183,8 @@ def test_film_points_are_the_spot_of_very_many_rays() -> None:
      ("tessar-50mm", 21.0), ("fast-50mm", 20.0), ("zoom-70-200mm", 8.0), ("wide-24mm", 38.0), ("phone-4mm", 33.0)],
 )  # fmt: skip
 def test_film_points_miss_nothing_that_passes(name: str, field: float) -> None:
-    """Against rays between the edges of the light, which real rays find one by one. Contrast tells what is missing at
-    the edge, where rays land farthest from the middle."""
+    """The reference is rays between the pupil's edges, which are searched with real rays. Contrast is sensitive to
+    light missing at the edge, whose rays land farthest from the centre."""
     lens = rc.Lens.load(name)
     bundle = lens.bundle(field, arms=512, nodes=32)
     points = lens.film_points(field, 400_000, dtype="float64").astype(float)
@@ -267,7 +267,7 @@ def test_zernike_orders_and_norm(order: str, table: list[tuple[int, int]]) -> No
 
 
 def test_zernike_polynomials_have_their_names() -> None:
-    """As J. C. Wyant and K. Creath list them (Applied Optics and Optical Engineering XI, 1992, table III)."""
+    """Names as listed by J. C. Wyant and K. Creath (Applied Optics and Optical Engineering XI, 1992, table III)."""
     fit = analysis.zernike_fit(LENS, order="fringe", terms=25)
     names = dict(zip(fit.indices.tolist(), fit.names, strict=True))
     assert names[4] == "defocus"
@@ -320,7 +320,8 @@ def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest
         return made
 
     monkeypatch.setattr(ReportPlots, "pages", pages_of)
-    # What the fisheye's curves are is no matter here. realcam.analysis.mtf is the function.
+    # The values of the fisheye's curves do not matter here. import_module, because the attribute realcam.analysis.mtf
+    # is the function, not the module.
     monkeypatch.setattr(import_module("realcam.analysis.mtf"), "_MAX_DOUBLINGS", 2)
     analysis.save_report(rc.Lens.load(name), tmp_path / "r.html", wavelengths_nm=[546.0], theme="dark")
     text = (tmp_path / "r.html").read_text(encoding="utf-8")
@@ -332,7 +333,7 @@ def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest
     assert [len(page.axes) > 4 for page in pages] == [True] * 3
     if name != "fisheye-6mm-220deg":
         return
-    # The edge of its light is too uneven for a transfer function; reasons stay in place.
+    # The edge of its pupil is too uneven for a transfer function; texts with the reason stay within their plots.
     titles = [axes.get_title() for axes in pages[1].axes]
     assert "MTF, geometric" in titles
     assert "MTF over the field, geometric" in titles

@@ -54,8 +54,8 @@ def test_patterns(pattern: str, samples: int, count: int) -> None:
     assert (wavefront.status == rc.RayStatus.OK).all()
     assert wavefront.weights.sum() == pytest.approx(1)
     assert np.hypot(*wavefront.pupil.T).max() <= 1 + 1e-15
-    # Each pattern stands for the whole disc: the mean of x^2 is 1/4. Equal weights on rings up to the edge count the
-    # edge too much, by one part in the number of rings.
+    # Each pattern represents the whole disc: the mean of x^2 is 1/4. Equal weights on rings up to the edge overweight
+    # the edge, by one part in the number of rings.
     mean = (wavefront.weights * wavefront.pupil[:, 0] ** 2).sum()
     assert mean == pytest.approx(0.25, rel={"grid": 0.02, "rings": 1e-12, "hexapolar": 0.2}[pattern])
 
@@ -86,7 +86,7 @@ def test_the_centroid_is_another_centre() -> None:
     assert chief.centre_mm[:2] == pytest.approx(spot.chief_ray_mm, abs=1e-12)
     assert centroid.centre_mm[:2] == pytest.approx(spot.centroid_mm, abs=1e-12)
     assert centroid.centre_mm[2] == pytest.approx(LENS.film_position_mm)
-    # They differ by a tilt.
+    # The two references differ by a tilt.
     levels = [LENS.wavefront(12.0, reference=r, remove="tilt").rms_waves for r in ("chief", "centroid")]
     assert levels[0] == pytest.approx(levels[1], rel=0.02)
 
@@ -178,7 +178,7 @@ def test_a_ray_aimed_at_the_edge_of_the_stop_passes_it_when_it_is_traced(name: s
     again = lens.trace(aimed.origins_mm[ok], aimed.directions[ok], start="scene")
     assert (again.status == rc.RayStatus.OK).all()
     at_stop = lens.trace(aimed.origins_mm[ok], aimed.directions[ok], start="scene", surface_count=lens.stop_index + 1)
-    # As near to the edge as it says: aimed at 5e-11 further in, within half of that.
+    # Rays are aimed 5e-11 inside the stop's edge, and land within half of that.
     share = np.hypot(*at_stop.origins_mm[:, :2].T) / lens.stop_semi_diameter_mm
     assert share.min(initial=1) > 1 - 1e-10
     assert share.max(initial=0) <= 1
@@ -198,10 +198,10 @@ def test_the_plane_in_focus_is_the_object_where_none_is_given() -> None:
     places = [[0.3, 0.4], [0.0, 0.9]]
     expected = near.aim(places, 5.0, object_distance_m=to_object).directions
     np.testing.assert_allclose(near.aim(places, 5.0).directions, expected, atol=1e-12)
-    # The film is where the axial spot of the plane in focus is smallest; focusing ends within 1e-9 of the distance.
+    # The film is at the smallest axial spot of the plane in focus; focusing converges to 1e-9 of the distance.
     assert near.best_focus_mm() == pytest.approx(near.film_distance_mm, rel=1e-9)
     assert near.best_focus_mm(math.inf) == pytest.approx(LENS.film_distance_mm, rel=1e-9)
-    # Of a lens focused at infinity that is infinity, also past 90 degrees.
+    # For a lens focused at infinity the plane in focus is at infinity, even for field angles beyond 90 degrees.
     fisheye = rc.Lens.load("fisheye-6mm-220deg")
     assert fisheye.spot(100.0).rms_radius_mm == fisheye.spot(100.0, object_distance_m=math.inf).rms_radius_mm
     with pytest.raises(rc.InputError, match="expected less than 90 deg for the plane in focus"):

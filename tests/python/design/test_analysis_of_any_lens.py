@@ -43,7 +43,7 @@ def test_a_lens_of_revolution_is_the_same_all_around() -> None:
 
 
 def test_an_anamorphic_lens_that_is_turned() -> None:
-    """By 90 degrees: what was along x is along y."""
+    """Turning by 90 degrees exchanges x and y."""
     lens = anamorphic().stopped_down(4)
     quarter = turned(lens)
     for x, y in ((0.0, 0.0), (10.0, 4.0), (-3.0, 9.0)):
@@ -63,13 +63,13 @@ def turned(lens: rc.Lens) -> rc.Lens:
 
 
 def test_light_in_the_middle_is_pi_sine_squared() -> None:
-    """In both planes: of an anamorphic lens the marginal rays have other angles in x and in y, and what passes is an
-    ellipse of direction cosines."""
+    """Holds in both meridians: an anamorphic lens has different marginal-ray angles in x and in y, and the transmitted
+    rays fill an ellipse of direction cosines."""
     for lens in (LENS, LENS.stopped_down(5.6), anamorphic(), anamorphic().stopped_down(8)):
         pupil = lens.film_pupil()
         half = 0.5 * np.ptp(pupil.outline.reshape(-1, 2), axis=0)
         assert pupil.irradiance == pytest.approx(math.pi * half[0] * half[1], rel=1e-3)
-        # And that by the f-number, but for the film's distance from the focus and spherical aberration.
+        # It also agrees with the f-number, except for the film's defocus and for spherical aberration.
         f_number = lens.first_order().f_number
         assert pupil.irradiance == pytest.approx(math.pi / (4 * f_number**2), rel=0.05)
 
@@ -151,7 +151,7 @@ def test_no_field_is_lost_beyond_a_small_image_circle() -> None:
 )  # fmt: skip
 @pytest.mark.slow
 def test_reports_of_lenses_that_are_not_of_revolution(name: str, tmp_path: Path) -> None:
-    """Maps over the film, and its points in place of angles; no plot is replaced by a reason."""
+    """The report has maps over the film, and film points instead of field angles; every plot is drawn."""
     lens = rc.Lens.load(name)
     analysis.save_report(lens, tmp_path / "r.html", wavelengths_nm=[587.6])
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
@@ -186,7 +186,7 @@ def test_spots_at_film_points_are_those_of_their_angles() -> None:
 
 
 def test_numbers_of_maps_are_written(tmp_path: Path) -> None:
-    """They have no frequency and no vectors: null."""
+    """Maps without frequency and vectors have null for them."""
     told = json.loads(analysis.as_json(analysis.field_map(LENS, "spot", points=(2, 2))))
     assert told["frequency_per_mm"] is None and told["vectors_mm"] is None
     assert np.shape(told["values"]) == (2, 2)

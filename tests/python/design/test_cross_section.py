@@ -1,4 +1,4 @@
-"""What drawings show of lenses, as arrays: outlines, faces, rays, marks."""
+"""Cross sections of lenses as arrays: outlines, faces, rays, marks."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def upper_arc(section: CrossSection, index: int) -> np.ndarray:
 
 
 def has_points(element: Element, points: np.ndarray) -> bool:
-    """Whether the outline has these very numbers."""
+    """True if the outline contains exactly these coordinates."""
     outline = {tuple(point) for polygon in element.polygons for point in polygon}
     return {tuple(point) for point in points} <= outline
 

@@ -66,7 +66,7 @@ def exact_numbers(lens: rc.Lens) -> dict[str, Any]:
 
 
 class Truth(ObjectRays):
-    """The rays of one object point through given places on the stop. `near`: the same for nearly the same lens."""
+    """The rays of one object point through given points on the stop. `near`: the same for a slightly changed lens."""
 
     def __init__(
         self,
@@ -240,7 +240,7 @@ def test_a_function_of_rays_has_the_gradient_of_its_central_differences() -> Non
                 slope = (function(ray, {}, i, step) - function(ray, {}, i, -step)) / (2 * step)
                 assert ours == pytest.approx(float(slope), rel=1e-9), i
     assert not found.by_origins[1].any() and not found.by_directions[1].any()
-    # None says that the function does not depend on it, and the gradient is linear.
+    # An omitted gradient means that the function does not depend on that output; the gradient is linear in them.
     parts: list[dict[str, Any]] = [{"of_origins": of_at}, {"of_directions": of_way}, {"of_optical_paths": of_path}]
     variables = [VARIABLES[name] for name in names]
     by = [rc.backpropagate_rays(lens, origins, directions, variables, **part, start="scene").by for part in parts]

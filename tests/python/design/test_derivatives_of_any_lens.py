@@ -76,8 +76,8 @@ def exact_numbers(lens: rc.Lens) -> dict[str, Any]:
 
 
 class Truth(ObjectRays):
-    """The rays of one object point, which stays in its place, through given places on the stop. `near`: the same for
-    nearly the same lens."""
+    """The rays of one fixed object point through given points on the stop. `near`: the same for a slightly changed
+    lens."""
 
     def __init__(
         self, of: dict[str, Any], chief: rc.AimedRays, object_mm: float, pupil: np.ndarray, near: Truth | None = None
@@ -94,8 +94,8 @@ class Truth(ObjectRays):
         return self.contrast(unit([mpf(FILM_MM[1]), -mpf(FILM_MM[0])]))
 
     def exit_pupil_distance(self) -> Any:
-        """Rays beside the chief ray on the film, as places and directions across it, meet the stop in A q + B p: the
-        mean of -A^-1 B over both meridians."""
+        """Rays near the chief ray, with positions q and direction offsets p on the film, hit the stop at A q + B p.
+        Returns the mean of -A^-1 B over both meridians."""
         z = self.chief[2]
         x = unit(cross([mpf(0), mpf(1), mpf(0)], z))
         axes, h = (x, cross(z, x)), mpf(10) ** -18
@@ -146,9 +146,10 @@ def test_gradients_are_central_differences_in_fifty_digits(object_m: float) -> N
 
 
 def focal_length_and_f_number(of: dict[str, Any], near: rc.AimedRays) -> tuple[Any, Any]:
-    """Of both meridians together, about the ray from the middle of the film to that of the stop, which is looked for
-    from a ray near to it. The determinants of how directions behind the lens, and places on the stop, change with the
-    place of parallel rays in front of it, by differences."""
+    """Focal length and f-number of both meridians together, about the ray from the film centre to the stop centre,
+    which is found by iteration from the nearby ray `near`. They follow from the determinants of two matrices: the
+    derivatives of the direction behind the lens, and of the point on the stop, by the position of parallel rays in
+    front of the lens. The derivatives are finite differences."""
     h, faces = mpf(10) ** -18, faces_of(of)
     at, d = [mpf(v) for v in near.origins_mm[0]], unit([mpf(v) for v in near.directions[0]])
 
@@ -213,7 +214,7 @@ def test_a_length_is_a_sum() -> None:
 
 
 def test_values_are_those_of_the_analyses() -> None:
-    """Of lenses whose axis turns and whose film is tilted, too."""
+    """The lenses include tilted axes and tilted films."""
     some = [rc.Variable.radius(0)]
     leaning = rc.Lens.load("double-gauss-50mm").focused(1.5).stopped_down(4).tilted(x_deg=4)
     for lens in (tilted_anamorphic(), leaning):
@@ -222,7 +223,7 @@ def test_values_are_those_of_the_analyses() -> None:
             assert lens.gradient("spot_mm", some, **named).value == pytest.approx(spot.rms_radius_mm, rel=1e-9)
             height = lens.gradient("chief_ray_height_mm", some, **named).value
             assert height == pytest.approx(spot.chief_ray_mm[1], rel=1e-9, abs=1e-9)
-            # Of exit pupils that are found by differences of rays.
+            # The exit pupils are found by finite differences of rays, hence the wider tolerance.
             waves = lens.gradient("wavefront_waves", some, **named).value
             assert waves == pytest.approx(wavefront.rms_waves, rel=1e-6)
 

@@ -309,7 +309,7 @@ def test_a_ghost_shows_the_glass_that_moves() -> None:
     draw_cross_section(telephoto, axes, rays=0, ghost=near)
     outlines = [patch for patch in axes.patches if not patch.get_fill()]
     assert len(outlines) == 2  # of ten elements
-    # Nothing in front of the group moves, so that the film stays where it is and so do the vertices.
+    # All surfaces in front of the focus group are fixed, so that the film keeps its position and so do their vertices.
     moved = near.vertices_mm[10] - telephoto.vertices_mm[10]
     first = next(patch for patch in axes.patches if patch.get_fill() and np.min(patch.get_xy()[:, 0]) > 100)
     assert np.allclose(outlines[0].get_xy() - first.get_xy(), (moved, 0), rtol=0, atol=1e-9)
@@ -346,7 +346,7 @@ def test_a_mistake_is_named(tmp_path: Path, options: list[str], why: str) -> Non
 
 @pytest.mark.slow
 def test_a_drawing_takes_less_than_a_second(tmp_path: Path) -> None:
-    """The best of five, because other programs run beside the tests; a drawing takes 0.3 s of an idle core."""
+    """The best of five runs counts, because other programs may run; a drawing takes 0.3 s on an idle core."""
     seconds = []
     for _ in range(5):
         start = time.process_time()

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 
 def words_of(svg: Path) -> set[str]:
-    """What a drawing says."""
+    """All texts of a drawing."""
     return {text.strip() for text in ElementTree.parse(svg).getroot().itertext()}
 
 

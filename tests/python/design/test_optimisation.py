@@ -11,7 +11,7 @@ TRIPLET = rc.Lens.load("cooke-triplet-50mm")
 
 
 def thin_lens(n: float, c1: float, c2: float) -> rc.Lens:
-    """Of f = 100 mm at f/20, the stop at its front."""
+    """Thin lens of f = 100 mm at f/20, the stop at its front."""
     return rc.Lens(
         surfaces=[
             rc.Stop(clear_semi_diameter_mm=2.5),
@@ -41,7 +41,7 @@ def test_a_thin_lens_bends_to_the_least_spherical_aberration(n: float) -> None:
 
 
 def plano_convex(conic: float) -> rc.Lens:
-    """Of index 1.6, its plane face to the light."""
+    """Plano-convex lens of index 1.6, its plane face towards the light."""
     return rc.Lens(
         surfaces=[
             rc.Stop(clear_semi_diameter_mm=10, thickness_mm=1),
@@ -170,7 +170,7 @@ def test_lenses_that_are_not_of_revolution_have_exact_slopes_too(name: str, surf
     for refocuses in (False, True):
         targets = rc.Targets(fields_deg=(0, 5), refocuses=refocuses, operands=operands)
         assert_slopes_are_differences(lens, variables, targets, 2)
-    # The object point of a near field follows such a lens, which derivatives do not know.
+    # The object point of a near field moves with such a lens, which the derivatives do not include.
     assert not _Search(lens, variables, rc.Targets(object_distance_m=2.0), 2, None).is_exact
 
 

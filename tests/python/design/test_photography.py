@@ -48,10 +48,10 @@ def thin_lens(f_number: float = 20.0, focal_length_mm: float = 100.0) -> rc.Lens
 @pytest.mark.parametrize("distance_m", [0.5, 2.0, 5.0])
 @pytest.mark.parametrize("circle_mm", [0.03, 0.1])
 def test_depth_of_field_of_a_thin_lens_is_the_formulas(distance_m: float, circle_mm: float) -> None:
-    """In inverse distances, in which blur is even.
+    """Compared in inverse distances, in which blur is uniform.
 
     The formulas leave out spherical aberration, whose blur of s < 2 um adds to the circle c as s^2 / (2 c^2), below
-    0.3%, and the stop's place 0.06 mm behind the principal plane, below 0.1% of the cone.
+    0.3%, and the stop's distance of 0.06 mm from the principal plane, below 0.1% of the cone.
     """
     lens = thin_lens().focused(distance_m)
     assert blur_diameter_mm(lens) < 0.002
@@ -65,7 +65,7 @@ def test_infinity_is_sharp_from_the_hyperfocal_distance_on() -> None:
     dof = depth_of_field(thin_lens().focused(30), 0.03)
     data = thin_lens().first_order()
     hyperfocal_mm = data.effective_focal_length_mm**2 / (data.f_number * 0.03) + data.effective_focal_length_mm
-    # And the film stands a focal length behind the lens.
+    # Distances count from the film, which is one focal length behind the lens.
     assert dof.formula_hyperfocal_m == pytest.approx((hyperfocal_mm + 100) / 1000, abs=1e-3)
     assert dof.real_hyperfocal_m == pytest.approx(dof.formula_hyperfocal_m, rel=5e-3)
     assert dof.real.far_m == dof.formula.far_m == math.inf
@@ -86,7 +86,7 @@ def test_equation_8_is_the_exact_depth_less_one_factor() -> None:
 
 
 def test_blur_of_a_defocused_lens_is_its_disc() -> None:
-    """Of an even disc the diameter is sqrt(8) times the RMS radius: here A |s'' - s'| / s'' by similar triangles."""
+    """A uniform disc's diameter is sqrt(8) times its RMS radius. Here it is A |s'' - s'| / s'' by similar triangles."""
     lens = thin_lens()
     wanted = 5.0 * 100 / 10_000  # stop of 5 mm; an object at 10 m is imaged f^2 / (s - f) behind the film
     assert blur_diameter_mm(lens, 10.0) == pytest.approx(wanted, rel=3e-3)
@@ -219,7 +219,7 @@ def test_depth_of_field_over_distance_of_a_thin_lens_is_the_formulas() -> None:
 
 
 def test_the_plot_of_depth_of_field_says_where_and_why_a_curve_is_missing() -> None:
-    """At f/2 the blur is above the limit of 0.03 mm at two stretches, at f/4 no light passes, f/8 has its curve."""
+    """At f/2 the blur exceeds the limit of 0.03 mm in two intervals, at f/4 no light passes, f/8 has a curve."""
     focus_m, nan = np.array([1.0, 2.0, 4.0, 8.0, 16.0]), np.nan
     formula = np.stack([[nan, 1.9, 3.8, 7.6, 15.0]] * 3)
     near = np.array([[nan, nan, 3.9, nan, nan], [nan] * 5, [nan, 1.9, 3.8, 7.6, 15.0]])
@@ -239,8 +239,8 @@ def test_the_plot_of_depth_of_field_says_where_and_why_a_curve_is_missing() -> N
 
 
 def test_the_blur_of_an_anamorphic_lens_is_that_of_all_its_planes() -> None:
-    """Its planes yz and xz have foci 2 mm apart, and yz alone blurs 29% more than the whole pupil. Rays of both planes
-    tell defocus and astigmatism exactly. The other aberrations blur by 0.12 mm, as a far object shows, and all by
+    """The planes yz and xz have foci 2 mm apart, and yz alone blurs 29% more than the whole pupil. Rays of both planes
+    give defocus and astigmatism exactly. The other aberrations blur by 0.12 mm, as a far object shows, and all by
     0.76 mm, so they are a fortieth of the mean square: within 5%."""
     lens = rc.Lens.load("anamorphic-65mm").focused(5.0)
     whole = lens.spot(0.0, pattern="rings", samples=40)

@@ -29,9 +29,9 @@ def perfect(f_number: float, f_mm: float = 100.0) -> rc.Lens:
     )
 
 
-# Another program's propagation. Our wavefront is handed over on a grid of the exit pupil: places on the stop are aimed
-# at, their optical path differences and their places on the reference sphere are fitted by polynomials, whose residuals
-# are far below what matters, and these are evaluated on the grid.
+# Propagation by another program. The wavefront is handed over on a grid of the exit pupil: rays are aimed at points on
+# the stop; their optical path differences and their points on the reference sphere are fitted by polynomials, whose
+# residuals are negligible, and these are evaluated on the grid.
 
 
 def polynomials(places: np.ndarray, order: int = 22) -> np.ndarray:
@@ -41,8 +41,8 @@ def polynomials(places: np.ndarray, order: int = 22) -> np.ndarray:
 
 
 def stop_rays(lens: rc.Lens, field: float) -> tuple[np.ndarray, np.ndarray]:
-    """Direction cosines (N, 2) on the reference sphere, and of the same rays the place in the bundle before the lens
-    (whose area is the light's energy), optical path difference and place on the stop, (N, 5)."""
+    """For the same rays: direction cosines (N, 2) on the reference sphere; and the position in the bundle before the
+    lens (whose area is the light's energy), the optical path difference and the point on the stop, (N, 5)."""
     k = np.arange(2000)
     radius, angle = np.sqrt((k + 0.5) / k.size), k * math.pi * (3 - math.sqrt(5))
     pupil = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
@@ -126,7 +126,7 @@ def test_both_sums_agree() -> None:
 
 @pytest.mark.parametrize("blades", [5, 6])
 def test_blades_make_spikes(blades: int) -> None:
-    """Each straight edge sends light to both sides, and opposite edges to the same."""
+    """Each straight edge diffracts light to both sides, and opposite edges into the same two spikes."""
     lens = perfect(4).with_iris(blades, rotation_deg=10).stopped_down(8)
     psf = lens.psf(object_distance_m=FAR, size=128, pitch_um=8 * 0.5876)
     x, y = np.meshgrid(psf.x_um, psf.y_um)
@@ -172,7 +172,7 @@ def test_light_is_conserved_and_described() -> None:
     assert list(frequencies) == [0, 50, 100]
     assert tangential[0] == sagittal[0] == 1
     assert 1 > tangential[1] > tangential[2] > 0
-    # What spreads the light along y takes contrast from lines across y: of a pinhole far off the axis, its ellipse.
+    # Blur along y lowers the contrast of lines across y: for a pinhole far off the axis, by its elliptical aperture.
     pinhole = rc.Lens(
         surfaces=[rc.Stop(clear_semi_diameter_mm=0.05), rc.Surface(clear_semi_diameter_mm=9)], film_distance_mm=500.0
     )
@@ -200,7 +200,7 @@ def test_rays_alone_are_the_spot() -> None:
 
 
 def test_a_wavefront_and_its_psf_have_one_strehl_ratio() -> None:
-    """Of a small aberration on the axis, where the brightest place is the middle, and the stop is evenly lit."""
+    """For a small aberration on the axis, where the PSF peaks at its centre and the stop is uniformly illuminated."""
     lens = rc.Lens.load("cooke-triplet-50mm").stopped_down(8)
     wavefront = lens.wavefront(object_distance_m=FAR, pattern="rings", samples=20)
     assert lens.psf(object_distance_m=FAR).strehl == pytest.approx(wavefront.strehl, abs=2e-3)

@@ -12,7 +12,7 @@ from realcam.analysis.fields import three_of
 
 from ..programs import Command
 
-# Each with fields of 0, 8, 12 and 16 degrees at 450, 546 and 620 nm, of which 546 nm is the primary one.
+# All files have fields of 0, 8, 12 and 16 degrees and wavelengths of 450, 546 (primary) and 620 nm.
 ZEMAX = [
     (r"FTYP .*", "FTYP 0 0 4 3 0 0 0"),
     (r"XFLN .*", "XFLN 0 0 0 0"),

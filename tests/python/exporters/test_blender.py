@@ -100,7 +100,7 @@ def test_cycles_takes_pictures_through_the_lens_of_the_panel(scene: Any, tmp_pat
     image = bpy.data.images.load(str(tmp_path / "picture.exr"))
     light = np.array(image.pixels[:]).reshape(40, 60, 4)[18:22, 28:32, 1].mean()
     lens = rc.Lens.load("singlet-100mm").focused(10.0).stopped_down(8)
-    # 4096 samples, of which nearly all pass.
+    # 4096 samples; nearly all pass.
     assert light == pytest.approx(lens.film_pupil().irradiance, rel=5e-3)
 
 
@@ -128,7 +128,7 @@ def test_the_focus_follows_an_object(scene: Any, tmp_path: Path) -> None:
         image = bpy.data.images.load(str(tmp_path / "picture.exr"))
         pixels = np.array(image.pixels[:]).reshape(-1, 4)
         bpy.data.images.remove(image)
-        # Of the rays that pass.
+        # Mean over the rays that pass.
         return float(pixels[:, 0].sum() / pixels[:, 1].sum())
 
     for frame, x in ((1, -3.0), (11, -9.0)):

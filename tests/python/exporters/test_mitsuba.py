@@ -47,7 +47,7 @@ def sensor_of(mi: Any, **properties: Any) -> Any:
 
 
 def sampled(mi: Any, sensor: Any, spp: int) -> tuple[Any, np.ndarray, np.ndarray]:
-    """Rays of all pixels, the place of each in the picture (2, N) in shares of it, and the weights."""
+    """Rays of all pixels, their points in the picture (2, N) as fractions of its size, and the weights."""
     count = COLUMNS * ROWS * spp
     rng = np.random.default_rng(1)
     pixel = np.arange(count) // spp
@@ -127,9 +127,9 @@ def test_path_and_ptracer_take_the_same_picture(variant: str) -> None:
     mi = mitsuba(variant)
     rounds = 16
     a, b = blocks(mi, scene(mi, "path"), rounds, 128), blocks(mi, scene(mi, "ptracer"), rounds, 512)
-    # Each block's error from its own rounds; where there is next to none, what float32 leaves.
+    # Standard error of each block, from its own rounds, plus the rounding of float32.
     error = np.sqrt((a.var(axis=0, ddof=1) + b.var(axis=0, ddof=1)) / rounds + (2e-4 * a.mean()) ** 2)
-    # Of 60 blocks and channels, the largest of Student's t with 30 degrees of freedom exceeds 5 in one of 700 tests.
+    # The largest of 60 t values (blocks and channels) with 30 degrees of freedom exceeds 5 in one of 700 tests.
     assert np.abs((a.mean(axis=0) - b.mean(axis=0)) / error).max() < 5
     whole = a.mean(axis=(1, 2, 3)), b.mean(axis=(1, 2, 3))
     of_whole = np.sqrt(sum(w.var(ddof=1) for w in whole) / rounds)

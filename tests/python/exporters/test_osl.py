@@ -106,7 +106,8 @@ def test_the_film_gets_as_much_light(program: Callable[[str], Callable[..., Rays
     for share in (0.0, 0.35, 0.55, 0.7, 0.95):
         raster = np.array([0.5 + 0.5 * share, 0.5 + 0.25 * share])
         expected = lens.film_pupil(tuple(film_points_mm(raster, lens.film_mm))).irradiance
-        # Of 65536 cells some 800 lie on an edge, and the half of each is counted by chance: 4e-4, three times that.
+        # About 800 of 65536 cells lie on an edge, and half of each is counted by chance: 4e-4. The remaining tolerance
+        # is three times that.
         if expected > 0.02 * lens.film_pupil().irradiance:
             assert light_at(program(name), raster, lens) == pytest.approx(expected, rel=2e-3), share
 

@@ -24,7 +24,7 @@ def shot(spp: int | str = 300, **more: object) -> rc.Shot:
 
 
 def picture(of: rc.Shot) -> rc.Image:
-    """What one machine makes of it."""
+    """Renders the shot in a single process, as the reference for jobs."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "the noise is")  # of 600 samples, which are few for a test's sake
         return rc.render(of.scene, of.camera, of.settings, device="cpu")

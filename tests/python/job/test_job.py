@@ -53,7 +53,8 @@ def test_several_processes_make_the_picture_of_one(tmp_path: Path) -> None:
 
 
 def test_colours_that_end_in_other_pixels(tmp_path: Path) -> None:
-    """Pixels share samples in tiles of 32 pixels, of which units have whole ones, and in no round of a wanted noise."""
+    """Dispersion shares samples among the pixels of a 32-pixel tile. Units consist of whole tiles, and the rounds of
+    spp="auto" share no samples."""
     with_colours = {"effects": ("dispersion",), "layers": ()}
     shots = {"counted": shot(40, **with_colours), "noise": shot("auto", noise_codes=4, max_spp=64, **with_colours)}
     job = made(tmp_path / "job", **shots)
@@ -71,7 +72,7 @@ def test_threads_are_processes_enough(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_processes_that_are_killed_lose_only_what_they_have_in_hand(tmp_path: Path) -> None:
-    """Three processes, one of which is killed at a time, at any moment, and started again."""
+    """Three processes; one at a time is killed at a random moment and started again."""
     folder = tmp_path / "job"
     job = made(folder, lamp=shot(400))
     moment = random.Random(5)
@@ -93,7 +94,7 @@ def test_processes_that_are_killed_lose_only_what_they_have_in_hand(tmp_path: Pa
 
 @pytest.mark.slow
 def test_a_full_disk_stops_work_in_one_line_and_loses_nothing(tmp_path: Path) -> None:
-    """No file may be longer than a unit is: as on a disk that is full, a write ends before all is there."""
+    """File sizes are limited to less than a unit: as on a full disk, a write ends before all data is written."""
     folder = tmp_path / "job"
     job = made(folder)
 
@@ -175,7 +176,7 @@ def test_what_was_deleted_or_damaged_is_done_again(tmp_path: Path, command: Comm
     (folder / "rounds" / "00000" / "002.npz").write_bytes(b"nothing")
     job.work()
     assert job.image() == before == picture(noisy)
-    # What only the sum of all looks into says what to do.
+    # Damage that only the final sum over all units detects is reported with the command that repairs it.
     content = bytearray(done[-1].read_bytes())
     content[len(content) // 2] ^= 1
     done[-1].write_bytes(content)
@@ -211,7 +212,7 @@ def changed(folder: Path, **entries: object) -> None:
 
 
 def test_a_strangers_shot_is_data_or_one_error(tmp_path: Path) -> None:
-    """A pickle in its place, with the digest that job.json names, and descriptions of values that cannot be."""
+    """The file is replaced by a pickle, with the digest that job.json names, and by descriptions of invalid values."""
     folder = tmp_path / "job"
     made(folder, lamp=shot(4))
     file = folder / "shots" / "00000.npz"
@@ -287,7 +288,7 @@ def job_of_four(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_pipes_devices_and_links_are_refused(tmp_path: Path, job_of_four: Path) -> None:
-    """Nothing waits for a writer, and no file beyond a link is read, overwritten or deleted."""
+    """Reading never blocks on a pipe, and no file that a link points to is read, overwritten or deleted."""
     folder = tmp_path / "job"
     outside = tmp_path / "outside"
     for name in ("job.json", "shots/00000.npz"):
@@ -333,7 +334,7 @@ def test_units_of_another_job_do_not_count(tmp_path: Path) -> None:
 
 
 def test_each_changed_bit_of_a_unit_is_found(job_of_four: Path, tmp_path: Path) -> None:
-    """All bits of the archive's directory, and a sample of the others."""
+    """Changes bits of the archive's directory, and a sample of the other bits."""
     file = next((job_of_four / "units").rglob("*pixels*.npz"))
     content, damaged = file.read_bytes(), tmp_path / "unit.npz"
     directory = content.rindex(b"PK\1\2")
@@ -377,7 +378,7 @@ def test_a_unit_holds_the_samples_that_its_name_says(tmp_path: Path, job_of_four
 
 
 def test_parts_share_a_job_without_a_scheduler(tmp_path: Path) -> None:
-    """With a number of samples each takes its own units alone; with a noise goal any of them ends with the picture."""
+    """With a number of samples each part takes its own units only; with a noise goal any part completes the job."""
     counted = made(tmp_path / "counted", a=shot(40), b=shot(40, seed=4))
     done = [0]
     for k in (3, 1, 2):

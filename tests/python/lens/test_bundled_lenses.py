@@ -13,7 +13,8 @@ from ...centred_lenses import CENTRED
 
 
 class Claim(NamedTuple):
-    """What the source of a lens states, in the file's scale; None: nothing. Deviations are named in the lens's file."""
+    """Values that a lens's source states, in the scale of the lens file; None if it states none. The lens's file names
+    deviations."""
 
     focal_length_mm: float | None
     f_number: float
@@ -92,8 +93,8 @@ def test_first_order_is_what_the_source_states(name: str) -> None:
         assert data.effective_focal_length_mm == pytest.approx(claim.focal_length_mm, rel=claim.focal_length_share)
     assert data.f_number == pytest.approx(claim.f_number, rel=claim.f_number_share)
     if claim.back_focus_mm is not None:
-        # Some sources give the first-order plane, some the sharpest one; both are meant, and a rounded figure besides:
-        # 17 for 17.4 at the coarsest.
+        # Some sources state the paraxial back focal distance, some that of the best focus; either is accepted.
+        # Figures are rounded: 17 for 17.4 at the coarsest.
         nearest = min((data.back_focal_distance_mm, lens.best_focus_mm()), key=lambda b: abs(b - claim.back_focus_mm))
         assert nearest == pytest.approx(claim.back_focus_mm, rel=0.025)
 

@@ -222,7 +222,7 @@ def test_light_passes_both_ways_alike() -> None:
 
 @pytest.mark.parametrize(
     ("metal", "wavelength", "expected"),
-    # 2 % or better agrees with what H. A. Macleod and the makers of mirrors print: 0.92 and 0.98 in the green.
+    # These agree within 2 % with the values that H. A. Macleod and mirror makers print: 0.92 and 0.98 in the green.
     [("aluminium", 550, 0.92), ("silver", 550, 0.98), ("aluminium", 825, 0.87)],
 )
 def test_metals_reflect_as_published(metal: str, wavelength: float, expected: float) -> None:

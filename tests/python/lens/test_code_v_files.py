@@ -31,7 +31,7 @@ def one_form(tmp_path: Path, *lines: str) -> rc.Surface:
 def passed(
     lens: rc.Lens, angle_deg: tuple[float, float], half_width: float, film_z: float, centre_y: float = 0.0
 ) -> np.ndarray:
-    """Where a bundle of parallel rays ends in a plane across the lens frame's z axis."""
+    """Points at which a bundle of parallel rays intersects a plane perpendicular to the lens frame's z axis."""
     way = np.array([*np.tan(np.deg2rad(angle_deg)), 1.0])
     way /= np.linalg.norm(way)
     grid = np.stack(np.meshgrid(*[np.linspace(-half_width, half_width, 25)] * 2), -1).reshape(-1, 2)
@@ -90,7 +90,7 @@ def test_a_reverse_decentre_undoes_an_ordinary_one(tmp_path):
     place = "YDE 2; ADE 45; CDE 10"
     undone = code_v(tmp_path, STOP, f"S 0 0\n{place}", f"S 0 0\nREV\n{place}", "S 50 4 600.400", BACK)
     assert undone.is_rotational and undone.surfaces == plain.surfaces
-    # Of a surface by its number, too.
+    # REV may also name a surface by its number.
     again = code_v(tmp_path, STOP, f"S 0 0\n{place}", f"S 0 0\n{place}\nREV S3", "S 50 4 600.400", BACK)
     assert again.surfaces == plain.surfaces
 

@@ -112,7 +112,7 @@ def test_the_cpu_takes_host_arrays_of_other_libraries() -> None:
 @pytest.mark.parametrize("to_gpu", [on_torch, on_cupy, DLPackAlone])
 @pytest.mark.parametrize("dtype", ["float64", "float32"])
 def test_rays_are_traced_where_they_lie(to_gpu: Callable[..., Any], dtype: str) -> None:
-    # What float32 holds exactly, so that both types are the same rays.
+    # The rays have values that float32 represents exactly, so that both input types describe the same rays.
     origins, directions = (array.astype(np.float32).astype(np.float64) for array in film_rays())
     expected = LENS.trace(origins, directions, device="cuda", dtype=dtype)
     assert isinstance(expected.origins_mm, np.ndarray)

@@ -50,7 +50,8 @@ def test_a_prism_whose_faces_touch(wedge_deg):
         rc.Surface(clear_semi_diameter_mm=50, tilt_deg=(wedge_deg, 0, 0), returns=True),
     )
     slopes = np.linspace(-0.2, 0.2, 41)
-    # Where the second face lies behind the first one: y < 0 at a turn about x that moves its upper half forwards.
+    # The side on which the second face lies behind the first: y < 0 for a rotation about x that moves its upper half
+    # forwards.
     side = 1.0 if lens.surfaces[2].tilt_deg[0] < 0 else -1.0
     directions = np.column_stack([np.zeros(41), np.sin(slopes), np.cos(slopes)])
     origins = np.tile([0, side * 10.0, 0], (41, 1)) - 5 * directions
@@ -81,12 +82,12 @@ def test_toroids_near_spheres_cylinders_and_points(radius, radius_x):
     passed = traced.status == rc.RayStatus.OK
     assert passed.sum() > 200
     x, y, z = traced.origins_mm[passed].T
-    # The section in yz, a circle through the vertex, turned about the line at distance radius_x. How high the section
-    # is at this distance from the line, written so that a huge distance costs no digits.
+    # The torus is its yz section, a circle through the vertex, rotated about the line at distance radius_x. `section`
+    # is the sag of that circle at a point's distance from the line, written so that a huge distance costs no digits.
     side = np.sign(radius_x)
     section = z - side * x**2 / (np.hypot(x, radius_x - z) + side * (radius_x - z))
     off = section - (y**2 + section**2) / (2 * radius)
-    # As for aspheres: the search ends where a step is a rounding of the point.
+    # The intersection search ends at a step of the size of the point's rounding, as for aspheres.
     worst = np.abs(off).max() / rim / np.finfo(float).eps
     tried = f"{passed.sum()} rays"
     hold_core(

@@ -61,7 +61,7 @@ def test_a_lens_turned_round_takes_the_same_rays_back(name: str) -> None:
     np.testing.assert_allclose(back.directions, -mirror * directions[passed], atol=1e-10)
     data, other = lens.first_order(), turned.first_order()
     assert other.effective_focal_length_mm == pytest.approx(data.effective_focal_length_mm, rel=1e-12)
-    # The focal points change places; distances are from the first and the last vertex.
+    # The focal points are exchanged; distances count from the first and the last vertex.
     assert other.back_focal_distance_mm == pytest.approx(-data.front_focal_distance_mm, rel=1e-9, abs=1e-9)
     assert turned.reversed(lens.film_distance_mm).surfaces == lens.surfaces
 
@@ -71,7 +71,8 @@ def test_turning_round_keeps_the_focus_group_and_wants_an_image() -> None:
     first, last = lens.focus_group or (0, 0)
     count = len(lens.surfaces)
     assert lens.reversed(100.0).focus_group == (count - 1 - last, count - 1 - first)
-    # Of a negative lens, and of one whose front focus lies inside the glass, there is no image.
+    # A negative lens, and a lens whose front focus lies inside the glass, form no image behind
+    # the reversed lens.
     negative = rc.Lens(
         surfaces=[
             rc.Surface(radius_of_curvature_mm=-50, material=1.5, thickness_mm=2, clear_semi_diameter_mm=5),

@@ -1,4 +1,4 @@
-"""Lenses that nobody can make, glasses that are none, and files that are no lens files."""
+"""Lenses that cannot be made, invalid glasses, and files that are not lens files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def lens_of(*rows: dict[str, object], **more: object) -> rc.Lens:
 
 
 def front(**more: object) -> dict[str, object]:
-    """Of radius 10 at a rim of 5: its sag is 10 - sqrt(75) = 1.3397 mm."""
+    """Front surface of radius 10 with a semi-diameter of 5: its sag is 10 - sqrt(75) = 1.3397 mm."""
     return {"radius_of_curvature_mm": 10.0, "material": 1.5, **more}
 
 
@@ -31,12 +31,12 @@ def test_faces_that_cross_inside_their_rims_are_refused_with_their_numbers() -> 
     with pytest.raises(rc.LensFileError, match=r"surface 2: crosses surface 3, by 0\.24 mm at 5 mm") as caught:
         lens_of(front(thickness_mm=1.1), PLANE)
     assert caught.value.surface == 2
-    # In air, where the next element's face comes back to this one's.
+    # An overlap in air: the next element's front face curves back to this one's.
     first = [front(thickness_mm=3.0), {"thickness_mm": 1.2}]
     hollow: dict[str, object] = {"radius_of_curvature_mm": -10.0, "material": 1.5, "thickness_mm": 3.0}
     with pytest.raises(rc.LensFileError, match=r"surface 3: crosses surface 4, by 0\.14 mm at 5 mm"):
         lens_of(*first, hollow, PLANE)
-    # What is rounded off printed figures is none: here 0.3 um.
+    # An overlap within the rounding of printed figures is accepted: here 0.3 um.
     lens_of(front(thickness_mm=1.3394), PLANE)
 
 
@@ -47,7 +47,7 @@ def test_glass_is_there_up_to_the_rim_of_its_larger_face() -> None:
     # A hollow one may be sunk into the glass, as in a fisheye's front.
     dome: dict[str, object] = {"radius_of_curvature_mm": 10.0, "material": 1.5, "clear_semi_diameter_mm": 9.9}
     lens_of({**dome, "thickness_mm": 1.0}, {"radius_of_curvature_mm": 5.0, "clear_semi_diameter_mm": 4.0})
-    # In air the smaller face has nothing out there.
+    # Faces on both sides of an air gap overlap only up to the smaller rim.
     lens_of(
         {"material": 1.5, "thickness_mm": 3.0},
         {"radius_of_curvature_mm": 10.0, "thickness_mm": 1.0},

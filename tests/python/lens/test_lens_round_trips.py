@@ -1,4 +1,4 @@
-"""What is written to other programs' files and read again traces the same rays, or is warned of by name."""
+"""Lenses saved to other programs' formats and loaded again trace the same rays, or saving warns and names the loss."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import realcam as rc
 pytestmark = pytest.mark.filterwarnings("ignore")
 
 FORMATS = (".toml", ".zmx", ".seq", ".json", ".roa")
-# Of rays that went through ten surfaces; coefficients that are multiplied out lose some digits.
+# Tolerances for rays through ten surfaces; multiplied-out coefficients lose some digits.
 POSITION_MM, DIRECTION = 1e-9, 1e-11
 
 EVEN = {4: 1e-6, 6: -2e-9}
@@ -80,7 +80,7 @@ def rays(half_width: float, half_slope: float, start_z: float) -> tuple[np.ndarr
 
 
 def there_and_back(lens: rc.Lens, path: Path) -> tuple[rc.Lens, str]:
-    """And what it is warned of when it is written."""
+    """Saves and loads the lens. Returns the loaded lens and the warnings raised while saving."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         lens.save(path)

@@ -77,7 +77,7 @@ def test_apertures(tmp_path):
 
 
 def test_fields_beyond_a_curved_image_end_at_its_edge(tmp_path):
-    """As of an eye, whose retina holds no larger circle than its own."""
+    """A curved image, such as an eye's retina, holds no image circle wider than its own sphere."""
     image = surface("StandardGeometry", 45.0, -12.0)
     front = surface("StandardGeometry", 0.0, 40.0, GLASS, is_stop=True)
     with pytest.warns(UserWarning, match="fields beyond the edge of its curved image"):
@@ -112,7 +112,7 @@ def test_a_mirror_that_folds_the_axis(tmp_path):
         way = np.tile([0.0, 0, 1], (7, 1))
         folded, plain = (each.trace(origins, way, start="scene") for each in (lens, straight))
         assert (folded.status == rc.RayStatus.OK).all()
-        # Rays are told in the frame in front of the lens, of which the fold has made y the axis, and z what was y.
+        # Rays are given in the frame in front of the lens. The fold has turned the axis into y, and y into z.
         np.testing.assert_allclose(folded.directions[:, 1], plain.directions[:, 2], atol=1e-12)
         across = np.abs(folded.directions[:, 2 * axis]), np.abs(plain.directions[:, axis])
         np.testing.assert_allclose(*across, atol=1e-12)

@@ -99,7 +99,8 @@ def test_a_lens_scaled_by_a_power_of_two_scales_its_rays(
 def spread(
     lens: rc.Lens, origins: np.ndarray, directions: np.ndarray, size: float, **how: str
 ) -> tuple[np.ndarray, ...]:
-    """What a rounding of the entering rays becomes: by how much results differ for a change of 1e-7 of the size."""
+    """Sensitivity to the rounding of the entering rays: change of the results per change of the origins (relative to
+    `size`) and directions, from steps of 1e-7. Also returns which rays pass for all steps."""
     step = 1e-7
     base = lens.trace(origins, directions, **how)
     moved, stays = np.zeros(len(origins)), base.status == 0
@@ -145,7 +146,7 @@ def test_a_ray_sent_back_retraces_its_way(lens: Drawn, start: str, seed: int) ->
     other = built.trace(ends, ways, start=back)
     stays, condition = spread(built, ends, ways, lens.size, start=back)
     assert (other.status[stays] == 0).all()
-    # From where it leaves the first surface it must meet the point that it came from, in the direction that it came in.
+    # The reversed ray, leaving the first surface, must hit the original point in the opposite direction.
     reach = np.sum((origins - other.origins_mm) * other.directions, axis=1, keepdims=True)
     apart = np.linalg.norm(other.origins_mm + reach * other.directions - origins, axis=1) / lens.size
     turned = np.linalg.norm(other.directions + directions, axis=1)

@@ -56,7 +56,7 @@ def load(folder: Path, name: str, text: str, **options: object) -> tuple[rc.Lens
 
 
 def zoom(operands: str) -> str:
-    """Two groups, of which the front one has the focal length of -60 mm."""
+    """A zoom lens of two groups, the front one of focal length -60 mm, in Zemax's format."""
     return zemax(
         [
             OBJECT,
@@ -80,7 +80,7 @@ def test_the_stop_of_each_configuration(tmp_path: Path) -> None:
     assert first == pytest.approx(alike.zoomed(0).first_order().f_number, rel=1e-12)
     assert second == pytest.approx(alike.zoomed(1).first_order().f_number * 5 / 6.2, rel=1e-12)
     assert second == pytest.approx(4.335, abs=5e-4)
-    # Of another surface it is a rim, of which a lens has one.
+    # For any surface but the stop, SDIA sets a rim. A lens has one rim per surface: the largest, with a warning.
     rims, told = load(tmp_path, "rims.zmx", zoom("SDIA 5 1 8.5\nSDIA 5 2 9.5\n"))
     assert rims.surfaces[4].clear_semi_diameter_mm == 9.5 and "semi-diameters" in told
 
@@ -109,7 +109,7 @@ def test_without_a_stop_the_first_surface_is_one(name: str, tmp_path: Path) -> N
 
 
 def test_a_list_of_faces_alone(tmp_path: Path) -> None:
-    """It begins with surface 1, or gives the object the glass of the first element, and ends with the last face."""
+    """The list begins with surface 1, or gives the object the first element's glass, and ends with the last face."""
     proper, _ = load(tmp_path, "proper.zmx", zemax([OBJECT, *SINGLET], "FLOA"))
     faces = [surface(25, 3, 6, CROWN), surface(-40, 0, 6)]
     for first in (0, 1):
@@ -327,7 +327,7 @@ def lens_of(
 
 
 def test_two_makers_glasses_of_one_name(tmp_path: Path) -> None:
-    """Schott and CDGM have an F2 each: a bare name beside both catalogues would be either."""
+    """Schott and CDGM each have an F2: a bare name is ambiguous if a file lists both catalogues."""
     crown = "cdgm:H-ZK9A"
     lens = lens_of(
         [(22, 3, 9, crown), (-400, 6, 9, None), (-22, 1, 5, "schott:F2"), (20, 5.75, 5, None)],

@@ -1,4 +1,4 @@
-"""What lenses let through: closed forms, an independent polarisation trace, T-stops, and coatings in lens files."""
+"""Transmission of lenses: closed forms, an independent polarisation trace, T-stops, and coatings in lens files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Vector = NDArray[np.float64]
 
 
 def indices_of(lens: rc.Lens, wavelength_nm: float) -> list[float]:
-    """Of the media before, between and behind the surfaces of a lens without mirrors."""
+    """Refractive indices of the media before, between and behind the surfaces of a lens without mirrors."""
     media = [1.0]
     for surface in lens.surfaces:
         media.append(surface.material.index(wavelength_nm) if surface.type == "refracting" else media[-1])
@@ -125,7 +125,7 @@ def test_light_passes_a_lens_both_ways_alike(name: str, coating: str) -> None:
 
 
 def field_of_the_film(lens: rc.Lens) -> float:
-    """Angle to the axis of the film's corner, degrees, or of the place nearest to it that gets light."""
+    """Field angle, in degrees, of the film's corner, or of the point nearest to it that receives light."""
     width, height = lens.film_mm
     while True:
         across = rc.Camera(lens, film=rc.Film(width, height)).field_of_view_deg.diagonal
@@ -153,7 +153,7 @@ def test_the_mean_of_s_and_p_at_each_surface_is_near_the_truth() -> None:
         ("the other bundled lenses", others, 0.025),
     ):
         hold_core("Effects", "mean of s and p at each bare surface", tried, worst, limit, "of the light")
-    # The test would not notice a shortcut that is none.
+    # Guards against two identical methods, which would pass the limits above.
     assert errors[fisheye] > 0.03
 
 
@@ -218,7 +218,11 @@ def test_coatings_are_part_of_the_value_and_stay_with_the_lens() -> None:
     [
         (lambda lens: lens.with_coating("silver"), rc.InputError, "has no mirror to coat"),
         (lambda lens: lens.with_coating("bare", [99]), rc.InputError, "there is no surface 99"),
-        (lambda lens: lens.with_coating("silver", [0]), rc.LensFileError, "surface 1: only a mirror can have a metal or a reflectance"),
+        (
+            lambda lens: lens.with_coating("silver", [0]),
+            rc.LensFileError,
+            "surface 1: only a mirror can have a metal or a reflectance",
+        ),
         (lambda lens: lens.with_coating("bare", [5]), rc.LensFileError, "surface 6: a stop or an aperture"),
         (lambda lens: lens.with_coating("shiny"), rc.InputError, "a coating must be one of"),
         (lambda lens: lens.transmission(0, polarisation="s"), rc.InputError, "expected traced or averaged"),

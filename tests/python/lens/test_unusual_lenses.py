@@ -30,7 +30,7 @@ def test_they_photograph(name: str) -> None:
 
 @pytest.mark.parametrize(
     ("name", "across_mm", "upright_mm"),
-    # Of the front anamorphic the source states 31.5 mm; both have squeezes of 2, within their three digits.
+    # For the front anamorphic the source states 31.5 mm; both lenses have a squeeze of 2, within their three digits.
     [("anamorphic-31mm", 31.5, 63), ("anamorphic-65mm", 65, 130)],
 )
 def test_squeeze_of_anamorphic_lenses(name: str, across_mm: float, upright_mm: float) -> None:
@@ -100,7 +100,7 @@ def test_pictures_are_squeezed_as_first_order_says() -> None:
 
 
 def sine_of_the_cone(lens: rc.Lens, axis: int) -> float:
-    """Of the widest ray that leaves the film's middle for the scene in one section: by search, through the lens."""
+    """Sine of the angle of the widest ray in one section that passes from the film centre to the scene, by search."""
     sines = np.linspace(0, 0.4, 8001)
     ways = np.zeros((len(sines), 3))
     ways[:, axis], ways[:, 2] = sines, -np.sqrt(1 - sines**2)
@@ -182,7 +182,7 @@ def test_a_schmidt_camera_is_as_sharp_at_the_edge_as_in_the_middle() -> None:
 
 
 def test_rays_land_on_the_curved_film() -> None:
-    """Of rays from one object point: where each, as a straight line, meets the film's sphere."""
+    """For rays from one object point: the point where each ray, as a straight line, intersects the film's sphere."""
     camera = rc.Lens.load("schmidt-225mm")
     rng = np.random.default_rng(1)
     pupil = rng.uniform(-0.7, 0.7, (50, 2))

@@ -27,7 +27,7 @@ def test_the_focal_length_is_the_one_asked_for(name: str) -> None:
         there = lens.zoomed(wanted)
         assert there.first_order().effective_focal_length_mm == pytest.approx(wanted, rel=1e-9)
         assert there.zoom_positions == lens.zoom_positions
-        # Spacings stay between those of the two positions beside, which is what keeps glass apart.
+        # Spacings stay between those of the two neighbouring positions, so that glasses cannot collide.
         k = int(np.searchsorted(lens.zoom_focal_lengths_mm, wanted))
         before, after = (lens.zoomed(i) for i in (k - 1, k))
         for a, b, c in zip(before.surfaces[:-1], there.surfaces[:-1], after.surfaces[:-1], strict=True):
@@ -44,13 +44,13 @@ def test_at_a_position_it_is_the_position(name: str) -> None:
             float(np.clip(focal_length * 1.0001, *lens.zoom_focal_lengths_mm[:: len(lens.zoom_positions) - 1]))
         )
         at = lens.zoomed(position)
-        # What a ring turned by a ten-thousandth moves is small: continuous, the film too.
+        # A zoom ring turned by 1e-4 moves the groups and the film only a little: the interpolation is continuous.
         assert near.film_distance_mm == pytest.approx(at.film_distance_mm, abs=0.02)
         assert near.zoom_position == position
 
 
 def test_two_groups_have_the_spacing_of_the_closed_form() -> None:
-    """Of two groups the power is linear in their spacing d: 1/f1 + 1/f2 - d / (f1 f2). So two positions give it all."""
+    """The power of two groups is linear in their spacing d: 1/f1 + 1/f2 - d / (f1 f2). Two positions determine it."""
     lens = rc.Lens.load("zoom-25-50mm")
     (moved,) = (
         i for i, s in enumerate(lens.surfaces[:-1])
@@ -74,7 +74,7 @@ def test_the_film_is_where_far_light_is_sharpest() -> None:
 
 
 def test_a_focus_shift_of_the_positions_goes_over_from_one_to_the_next(tmp_path: Path) -> None:
-    """Of a file that has the film out of focus: by scipy's monotone cubic over the logarithm of the focal length."""
+    """For a file with a defocused film: the focus shift is scipy's monotone cubic over the log of the focal length."""
     lens = rc.Lens.load("zoom-25-50mm")
     shifts = [0.0, 0.05, 0.07]
     text = (LENSES / "zoom-25-50mm.toml").read_text(encoding="utf-8")
@@ -94,7 +94,7 @@ def test_rings_stay_as_they_are() -> None:
     there = lens.zoomed(100.0)
     assert there.focus_distance_m == pytest.approx(3, rel=1e-9)
     assert there.focused(math.inf).first_order().f_number == pytest.approx(5.6, rel=1e-6)
-    # From one place between to the next is as from a position.
+    # Zooming from one intermediate focal length to another gives the same lens as zooming from a position.
     assert there.zoomed(150.0).zoomed("70mm").surfaces == lens.zoomed("70mm").surfaces
     opened = rc.Lens.load("zoom-70-200mm").zoomed(100.0)
     assert opened.stop_semi_diameter_mm == opened.surfaces[opened.stop_index].clear_semi_diameter_mm

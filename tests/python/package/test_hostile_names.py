@@ -41,7 +41,7 @@ TEXTS = [
 
 
 def visible(text: str) -> str:
-    """As formats of lines hold it: each control character is a blank."""
+    """The text as line-based formats store it: each control character becomes a blank."""
     return "".join(" " if ord(c) < 32 or 127 <= ord(c) < 160 else c for c in text)
 
 

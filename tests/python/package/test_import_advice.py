@@ -17,7 +17,7 @@ PACKAGES = Path(realcam.__file__).parents[1]
 @pytest.mark.parametrize(
     ("said", "wanted"),
     [
-        # As glibc's loader says it.
+        # Messages of glibc's loader.
         ("/lib/x86_64-linux-gnu/libm.so.6: version `GLIBC_2.34' not found (required by _core.so)", "glibc 2.34 or"),
         ("/lib64/libstdc++.so.6: version `GLIBCXX_3.4.29' not found (required by _core.so)", "glibc 2.34 or later"),
         ("cannot import name '_core' from partially initialized module 'realcam'", "is not built for Python 3."),
@@ -64,7 +64,7 @@ def test_a_package_without_its_extension_says_so(tmp_path: Path, words: list[str
 def test_a_missing_package_is_told_with_what_brings_it(
     tmp_path: Path, missing: str, words: list[str], wanted: str
 ) -> None:
-    """Those of realcam[denoise] and realcam[raw]: test_denoiser.py, test_sensor_hard.py."""
+    """The packages of realcam[denoise] and realcam[raw] are tested in test_denoiser.py and test_sensor_hard.py."""
     (tmp_path / "scene.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     code = f"import sys; sys.modules[{missing!r}] = None; {COMMAND}"
     done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, cwd=tmp_path)

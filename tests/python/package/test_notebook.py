@@ -1,4 +1,4 @@
-"""What notebooks show: PNG files and tables, by the methods that IPython asks for; and texts that hold no arrays."""
+"""Output in notebooks: PNG files and tables, by the methods that IPython calls; and texts without arrays."""
 
 from __future__ import annotations
 
@@ -155,6 +155,6 @@ def test_texts_are_short_and_hold_no_arrays(make: Any) -> None:
 
 
 def test_realcam_alone_does_not_load_matplotlib() -> None:
-    """It takes longer than all the rest."""
+    """Importing matplotlib takes longer than importing everything else."""
     code = "import sys, realcam; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,4 +1,4 @@
-"""What a pickle holds is input as any other: damage is an InputError in one line, and nothing else."""
+"""The content of a pickle is validated like any other input: damage raises an InputError of one line, nothing else."""
 
 from __future__ import annotations
 
@@ -110,10 +110,10 @@ def test_a_glass_is_made_as_others_are() -> None:
 
 
 def test_what_is_shared_is_of_one_type() -> None:
-    """A number stands for what was written before; it must not give a motion for a mesh."""
+    """A number refers to an object written earlier. A reference to a motion must not be accepted as a mesh."""
     moving = scene().moved(scene().instances[0][0], [np.eye(4), np.eye(4)], times_s=[0, 1])
     geometry, instances, *others = arguments_of(moving)[3]
-    # What is shared, in its order: the static geometry, the chair, and the motion of the first of its instances.
+    # Shared objects in the order of their numbers: the static geometry, the chair, the motion of its first instance.
     (chair, *_, motion), (of_second, *_, standing), _ = instances
     assert isinstance(chair, tuple) and isinstance(motion, tuple) and standing is None and of_second == 1
     for number in (2, 3, 10**6, -1):

@@ -59,7 +59,7 @@ def started(code: str) -> Iterator[subprocess.Popen[str]]:
 LONG_CALLS = {
     # 25 s, and a tile of 1024 pixels takes 4 s.
     "64 bounces": 'rc.render(room(), camera, effects=(), spp=256, max_bounces=64, device="cpu")',
-    # Which waits for another thread's picture.
+    # This render waits for another thread's picture.
     "a second picture": """
         work = lambda: rc.render(room(), camera, effects=(), max_bounces=1, spp=4096, device="cpu")
         threading.Thread(target=work, daemon=True).start()
@@ -162,7 +162,7 @@ AT_WORK = {
 
 
 def ends_cleanly(code: str) -> str:
-    """What the process says on stderr."""
+    """Runs the code in a process that must end without errors. Returns the process's stderr."""
     process = child(code)
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 0, errors
@@ -187,7 +187,7 @@ def test_python_ends_cleanly_while_a_daemon_thread_works(what: str) -> None:
 
 @pytest.mark.parametrize("kept", ["live", "frame"])
 def test_python_ends_cleanly_with_a_frame_under_way(kept: str) -> None:
-    """Which would take minutes, and of which only the view or only the frame is held by somebody, in a cycle."""
+    """The frame would take minutes. Only the view, or only the frame, is still referenced, from a reference cycle."""
     code = f"""
         live = rc.LiveView(room(), device="cpu", max_bounces=64)
         frame = live.shoot(camera, spp=1 << 20)
@@ -289,7 +289,7 @@ def test_a_forked_process_works_or_says_why_not(concurrent: bool) -> None:
 
 
 def test_a_process_forked_amid_a_render_ends_at_once() -> None:
-    """By sys.exit, which runs what waits for work under way: there is none in the child."""
+    """sys.exit in the child runs the exit handler that waits for renders; the child has no render to wait for."""
     code = """
         work = lambda: rc.render(room(), camera, effects=(), max_bounces=1, spp=10**6, device="cpu")
         thread = threading.Thread(target=work, daemon=True)
@@ -350,7 +350,7 @@ def renders_of(process: int) -> list[str]:
 
 @pytest.mark.picture_files
 def test_the_demo_takes_its_render_along_when_it_is_terminated(tmp_path: Path) -> None:
-    """And leaves no empty folder."""
+    """The render process ends with the demo, and no empty folder is left behind."""
     command = [sys.executable, "-m", "realcam", "demo", "-o", str(tmp_path / "a" / "b"), "--spp", str(2**24)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         end = time.monotonic() + 30

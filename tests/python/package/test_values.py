@@ -145,7 +145,7 @@ def test_what_makes_no_sense_is_not_unpickled() -> None:
 
 @pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
 def test_goes_to_other_processes(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As torch's DataLoader sends its dataset to workers: by fork on Linux, or pickled; results come back pickled."""
+    """Values travel as in torch's DataLoader: to workers by fork (on Linux) or pickled, and back pickled."""
     monkeypatch.syspath_prepend(Path(__file__).parent)
     tasks = importlib.import_module("worker_tasks")
     lit = floor_scene().with_environment(100)

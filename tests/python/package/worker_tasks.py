@@ -1,4 +1,4 @@
-"""What other processes are asked to do: they import it by this name."""
+"""Tasks for worker processes, which import them by this module's name."""
 
 from __future__ import annotations
 

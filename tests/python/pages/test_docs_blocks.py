@@ -43,7 +43,7 @@ def what_is_missing(code: str) -> str:
 
 @pytest.fixture
 def names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """What pages take for granted: a scene, a camera, a picture; and files in the current folder."""
+    """Names that the pages assume: a scene, a camera, a picture. Also creates files in the current folder."""
     render, accuracy_cost = rc.render, rc.accuracy_cost
 
     def small(camera: rc.Camera) -> rc.Camera:
@@ -103,7 +103,7 @@ def test_blocks_run(page: Path, names: dict[str, Any]) -> None:
         if missing := what_is_missing(code):
             skipped.append(f"line {line} wants {missing}")
             continue
-        # With the lines of the page in a traceback.
+        # Blank lines make a traceback show the line numbers of the page.
         exec(compile("\n" * (line - 1) + code, str(page), "exec"), names)
     if skipped:
         pytest.skip("; ".join(skipped))

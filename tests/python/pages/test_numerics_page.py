@@ -88,7 +88,7 @@ def test_page(tmp_path: Path) -> None:
     assert cells(head, "case") == ["case", f"float32, {backends}", f"float64, {backends}", "unit", "tried"]
     assert cells(page, "sphere")[1:3] == ["– · 0.5 · 0.5 ≤ 8", "1 · 2 · 3 ≤ 8"]
     assert cells(page, "run")[1:] == ["3 ≤ 4", "ulp", "lens b, the worst of 2"]
-    # Of a broken routine, the one that comes nearest to passing.
+    # For a broken routine, the page shows the result that comes nearest to passing.
     assert cells(page, "wrong root")[1:5] == ["float64", "1e5", "4", "ulp"]
     assert cells(page, "no sum")[1:5] == ["float32", "NaN", "1e-7", "relative"]
     assert "](images/float32-error.png)" in page
@@ -96,7 +96,7 @@ def test_page(tmp_path: Path) -> None:
 
 
 def test_a_page_of_two_machines(tmp_path: Path) -> None:
-    """Each has backends that the other lacks; of what both have, the figure nearest to its limit counts."""
+    """Each machine has a backend that the other lacks; for shared backends, the figure nearest to its limit counts."""
     both = {"worst": 1.0}, {"worst": 3.0, "tried": "900 rays"}
     gpu = RUN | {"commit": "def", "devices": ["CUDA"]}
     of_cpu, of_gpu = (

@@ -32,7 +32,7 @@ def module_of(name: str, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 
 
 def entries(index: str) -> list[str]:
-    """Of all tables of contents of a page, names of pages or patterns of them."""
+    """Page names, or patterns of page names, in all tables of contents of a page."""
     trees = re.findall(r"^```\{toctree\}\n(.*?)^```", index, re.DOTALL | re.MULTILINE)
     lines = [line for tree in trees for line in tree.splitlines() if line and not line.startswith(":")]
     return [re.sub(r".*<(.*)>", r"\1", line) for line in lines]  # without titles
@@ -169,7 +169,8 @@ def links(page: Path) -> set[str]:
 
 
 def missing_links(folder: Path) -> set[str]:
-    """Of the pages of a folder that the site lays beside `docs`: neither beside them nor in the repository."""
+    """Link targets in a folder's pages that exist neither in the folder nor in the repository. The site puts these
+    pages beside `docs`."""
     targets = {target for page in folder.glob("*.md") for target in links(page)}
     return {target for target in targets if not (folder / target).is_file() and not (SITE.parent / target).is_file()}
 
@@ -206,7 +207,7 @@ def test_pages_of_lenses_are_complete(monkeypatch: pytest.MonkeyPatch, denoiser:
                     surface["radius_of_curvature_mm"], rel=1e-5
                 )  # six digits are shown
         assert {"## Figures", "## Contrast", "## Prescription"} <= set(text.splitlines())
-    # What is younger than its sources is kept.
+    # Pages that are newer than their sources are not rewritten.
     before = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
     pages.write(tmp_path, names)
     assert {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()} == before

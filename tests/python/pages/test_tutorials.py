@@ -82,8 +82,8 @@ def test_lens_designer(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_vision_engineer(monkeypatch: pytest.MonkeyPatch) -> None:
     seen = run("vision_engineer", monkeypatch)
-    # Where the line of a pixel meets the board z = 0 says in which square it is, and so whether it is light or dark. In
-    # the middle half of a square no blur reaches, which is some hundredths of a square wide.
+    # The intersection of a pixel's ray with the board z = 0 gives the square, and so whether it is light or dark. Blur
+    # does not reach the middle half of a square: it is some hundredths of a square wide.
     columns, rows = seen["camera"].film.resolution
     pixels = np.stack(np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5), axis=-1).reshape(-1, 2)
     origins, directions = seen["camera"].ray(pixels)

@@ -43,11 +43,12 @@ def test_every_tile_reaches_the_noise_and_none_gets_many_more_samples(device: st
     counts = image.layers["sample_count"]
     assert image.spp == pytest.approx(counts.mean(), abs=0.51)
     assert image.shortfall == ""
-    # What glows has the noise of the way through the lens alone.
+    # The emitter's only noise comes from sampling the lens.
     assert counts[:, : SIDE // 4].mean() < counts.mean() / 2
     mean = converged.reshape(SIDE // 16, 16, SIDE // 16, 16, 3).mean(axis=(1, 3, 4))
     noise = tiles((image.pixels - converged) ** 2) / mean
-    # Of two halves of 128 pixels each, whose noise is known within 8%; and the noise of the converged picture itself.
+    # The margin covers the noise estimate from two halves of 128 pixels each, known within 8%, and the noise of the
+    # converged picture itself.
     assert noise.max() < 1.2 * goal
     uniform = rc.render(half_noisy(), camera(), effects=(), spp=image.spp, device=device)
     # The noisy tiles have more samples than then, and errors fall at least with their square root; either is known
@@ -70,13 +71,13 @@ def test_codes_are_those_of_the_developed_picture(device: str, converged: np.nda
 
     noise = tiles((codes(image.pixels.astype(np.float64)) - codes(converged)) ** 2)
     assert 1.5 < noise.max() < 3.6
-    # What is clipped has no noise.
+    # Clipped pixels have no noise.
     white = rc.render(scenes.sky(), camera(iso=1e4 * iso), effects=(), spp="auto", device=device)
     assert white.spp == 16
 
 
 def test_stopping_by_noise_does_not_bias_the_mean(device: str) -> None:
-    # A small lamp far out of focus, over a dark sky: few samples meet it, and a pixel that met none looks finished.
+    # A small, strongly defocused lamp over a dark sky: few samples hit it, and a pixel without a hit looks converged.
     scene = scenes.scene_of(scenes.quad((0.05, 0.02, -30), 0.02, emission=2e4)).with_environment(1.0)
     by_pixels = {"effects": (), "light_tracing": "off"}  # samples from the lamp would light all of its disc
     film = rc.Film(18, 12, (48, 32))
@@ -110,7 +111,7 @@ POINT = scenes.scene_of(scenes.quad((0, 0, 9), 1)).with_point_light((0, 0, -4), 
     ],
 )
 def test_the_noise_of_lamps_is_told(scene: rc.Scene, focus_m: float, resolution: tuple[int, int], device: str) -> None:
-    """Their light comes from samples of their own, few for a picture of few pixels."""
+    """Lamps have samples of their own (light tracing), which are few for a picture of few pixels."""
     lens = rc.Lens.load("double-gauss-50mm").focused(focus_m)
     view = rc.Camera(lens, film=rc.Film(24, 16, resolution), position=(0, 0, 0), exposure_time_s=1, iso=1e-3)
     told, pictures = [], []
@@ -129,9 +130,9 @@ def test_the_noise_of_lamps_is_told(scene: rc.Scene, focus_m: float, resolution:
         spread = max(spread, float(np.sqrt(variance[pixels].mean())) / light)
     assert spread > 0
     ratio = float(np.sqrt(np.mean(np.square(told)))) / spread
-    # Independent samples change by as much as they err, and are told 2^-0.6 of it where two doublings by chance show a
-    # faster rate. Where the error falls like 1 / n, the change is sqrt(5) of it. 30 seeds with a few lit pixels each
-    # know either within a fifth.
+    # For independent samples the change equals the error, and 2^-0.6 of it is reported if two doublings by chance show
+    # a faster rate. If the error falls like 1 / n, the change is sqrt(5) times the error. 30 seeds with a few lit
+    # pixels each know either within a fifth.
     assert 0.8 * 0.85 < ratio < 1.2 * 2.24
 
 

@@ -131,9 +131,9 @@ def test_layers_of_another_size_are_refused(shape: tuple[int, ...]) -> None:
 @pytest.mark.parametrize("fast", [False, True])
 @pytest.mark.parametrize("size", [(1, 1), (3, 200), (5, 4), (64, 48)])
 def test_light_is_neither_made_nor_lost(fast: bool, size: tuple[int, int]) -> None:
-    """Of an even grey of any size. The network changes pixels at the edges by a third, so the mean counts.
+    """A uniform grey picture of any size keeps its mean. Pixels at the edges change by a third, so the mean counts.
 
-    The picture is scaled to what the network knows, so that bright pictures are dark ones times a factor.
+    The picture is scaled to the network's range, so that results are proportional to the exposure.
     """
     denoiser = opened("cpu")
     means = []
@@ -149,7 +149,7 @@ def test_light_is_neither_made_nor_lost(fast: bool, size: tuple[int, int]) -> No
 
 @wants_it
 def test_a_denoiser_takes_pictures_of_other_sizes_and_qualities() -> None:
-    """As the lens bench has them: what is kept for one size must not be used for the next."""
+    """The lens bench uses a denoiser like this: buffers of one size must not be used for the next size."""
     one = opened("cpu")
     rng = np.random.default_rng(1)
     for size, fast in (((8, 9), True), ((20, 7), True), ((20, 7), False), ((8, 9), True)):

@@ -31,7 +31,7 @@ def settings(**more: object) -> rc.RenderSettings:
 
 
 def regions(width: int = 17, height: int = 9) -> list[tuple[int, int, int, int]]:
-    """Rectangles that fill the film, none of which begins where tiles of the renderer do."""
+    """Rectangles that cover the film and whose inner borders are not borders of the renderer's tiles."""
     return [
         (column, row, min(width, WIDTH - column), min(height, HEIGHT - row))
         for row in range(0, HEIGHT, height)
@@ -45,7 +45,7 @@ def parts(session: rc.Session) -> list[rc.FilmPart]:
 
 
 def test_a_picture_of_parts_has_the_bits_of_the_whole(tmp_path: Path) -> None:
-    """All layers and ghosts, too. Two sessions share the work, and the parts travel as files."""
+    """This includes all layers and ghosts. Two sessions share the work, and the parts travel as files."""
     with_layers = settings(layers="all")
     sessions = [rc.Session(room(), camera(), with_layers, device="cpu") for _ in range(2)]
     exposed = []
@@ -62,7 +62,7 @@ def test_a_picture_of_parts_has_the_bits_of_the_whole(tmp_path: Path) -> None:
 
 
 def test_a_gpu_gives_the_same_picture_whatever_the_regions(device: str) -> None:
-    """The same bits for all tiles, and on a CPU also those of one render; a GPU sums that in an order of its own."""
+    """All tilings give the same bits, on a CPU also those of one render; a GPU sums a render in another order."""
     session = rc.Session(room(), camera(), settings(), device=device)
     one = session.image_of(
         [session.expose((0, 0, WIDTH, HEIGHT), first, spp) for first, spp in SAMPLES]

@@ -41,7 +41,7 @@ look_at_m = [1, 0, 0]
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """With a shot whose camera moves by a metre in a second, past a wall that begins at x = 0."""
+    """A folder with a shot whose camera moves at 1 m/s past a wall that begins at x = 0."""
     (tmp_path / "wall.obj").write_text("v 0 -5 0\nv 5 -5 0\nv 5 5 0\nv 0 5 0\nf 1 2 3 4\n")
     (tmp_path / "pan.toml").write_text(SHOT)
     monkeypatch.chdir(tmp_path)
@@ -67,7 +67,7 @@ def test_frames_open_their_shutters_one_after_the_other(folder: Path) -> None:
 
 
 def test_the_noise_of_frames_has_nothing_in_common() -> None:
-    """Of 30 frames of one shot, and of a shot whose seed is the next: as little as of independent noise."""
+    """15 frames of one shot and 15 of a shot with the next seed are as uncorrelated as independent noise."""
     scene = scenes.scene_of(scenes.quad((0, 0, -3), 5, diffuse=0.7)).with_environment((900, 500, 100))
     camera = rc.Camera(rc.Lens.load("tessar-50mm").focused(1), film=rc.Film(36, 24, (24, 16)))
     shots = [rc.Shot(scene, camera, rc.RenderSettings(spp=2, seed=seed, effects=())) for seed in (0, 1)]
@@ -79,9 +79,9 @@ def test_the_noise_of_frames_has_nothing_in_common() -> None:
     noise /= noise.std(axis=0)  # some pixels have more of it, which would count for all others
     flat = noise.reshape(30, -1)
     correlation = np.corrcoef(flat)[~np.eye(30, dtype=bool)]
-    # Their mean was taken out of 30, which correlates two by -1 / 29. The rest is chance, of 384 pixels.
+    # Subtracting the mean of the 30 frames correlates any two by -1 / 29. The remainder is chance, over 384 pixels.
     assert np.abs(correlation + 1 / 29).max() < 5 / np.sqrt(384)
-    # Nor does it move over the picture: the same with the frame before, by a pixel to each side.
+    # The noise must not move over the picture either: each frame is compared with the previous one, shifted by a pixel.
     for shift in ((0, 1), (1, 0), (1, 1)):
         moved = np.roll(noise[:-1], shift, axis=(1, 2)).reshape(29, -1)
         alike = [np.corrcoef(a, b)[0, 1] for a, b in zip(moved, flat[1:], strict=True)]
@@ -104,7 +104,7 @@ def test_the_iso_number_follows_the_meter_smoothly(folder: Path) -> None:
         ages = np.arange(min(n, 11))  # five times the smoothing, and the frame itself; no frame before the first
         weights = np.exp(-ages / 20 / 0.1)
         expected.append((weights * target[n - 1 - ages]).sum() / weights.sum())
-    # Float pictures of the same samples, of which the exposure is a factor: some digits.
+    # Float32 pictures of the same samples, scaled by the exposure, agree to some digits.
     np.testing.assert_allclose(np.log2(isos), expected, atol=1e-5)
     # A frame by itself has the same.
     assert following.frames([7], frames_per_second=20, device="cpu")["frame.0007"].camera.iso == isos[6]

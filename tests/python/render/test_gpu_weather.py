@@ -1,4 +1,4 @@
-"""What a GPU does when something is wrong: no driver, little memory, another process, Ctrl-C."""
+"""Behaviour of GPUs under adverse conditions: no driver, little memory, another process, Ctrl-C."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ print(repr(float(pixels.sum())), repr(float(pixels[::-1][:100].sum())))
 @pytest.mark.gpu
 @one_or_several
 def test_progress_stops_a_picture_soon(device: str) -> None:
-    """Also a hard scene after an easy one."""
+    """This includes an expensive scene after a cheap one."""
     wide = camera((1200, 800))
     sky = rc.Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(1.0)
     rc.render(sky, wide, effects=(), spp=4096, max_bounces=0, device=device)  # many samples a millisecond
@@ -230,7 +230,7 @@ def test_a_gpu_without_a_sample_adds_nothing() -> None:
     scene, wide = frame_scene(spheres=3, boxes=3), camera((1200, 800))
     expected = rc.render(scene, wide, effects=(), spp=1, device="cuda:0").pixels
     for _ in range(20):
-        # What the second GPU has left from this one is not to be seen in the next.
+        # Samples that the second GPU takes in this picture must not appear in the next one.
         rc.render(scene, wide, effects=(), spp=64, device="cuda:0,1")
         np.testing.assert_array_equal(rc.render(scene, wide, effects=(), spp=1, device="cuda:0,1").pixels, expected)
 

@@ -27,7 +27,7 @@ ROOT = Path(__file__).resolve().parents[3]
 def image() -> rc.Image:
     lens = rc.Lens.load("double-gauss-50mm").focused(2.5).stopped_down(5.6)
     camera = rc.Camera(lens, film=rc.Film(12, 9, (16, 12)), exposure_time_s=1 / 60, iso=400)
-    # Of the upper half red, of the lower half blue; nothing at the sides.
+    # The upper half of the picture is red, the lower half blue, and the sides are black.
     upper = scenes.quad((0, 0.25, -2.5), 0.2, 0.25, emission=(300, 10, 0))
     lower = scenes.quad((0, -0.25, -2.5), 0.2, 0.25, emission=(0, 10, 300))
     return rc.render(scenes.scene_of(upper, lower), camera, effects=(), spp=4, seed=11)
@@ -92,7 +92,7 @@ def test_metadata_can_be_read_back(image: rc.Image, tmp_path: Path, suffix: str)
     assert "realcam" in spec.getattribute("Software")
     if suffix == ".png":
         return
-    # Where other programs look for it.
+    # Standard tags that other programs read.
     assert value("ExposureTime") == pytest.approx(1 / 60, rel=1e-4)
     assert value("FNumber") == pytest.approx(5.6, rel=1e-4)
     assert value("isoSpeed") == 400
@@ -135,7 +135,7 @@ picture = rc.render(scenes.sky(), rc.Camera(rc.Lens.load("tessar-50mm"), film=rc
 
 @pytest.mark.parametrize("suffix", [".exr", ".png"])
 def test_a_limit_on_file_sizes_leaves_the_old_file(tmp_path: Path, suffix: str) -> None:
-    """As a full disk: what was there stays, nothing else appears, and the message says why."""
+    """A limit acts like a full disk: the old file stays, no other file appears, and the message gives the reason."""
     path = tmp_path / f"picture{suffix}"
     path.write_bytes(b"the old one")
     limit = """
@@ -221,7 +221,7 @@ def test_unknown_tone_curve(image: rc.Image, tmp_path: Path) -> None:
 
 
 def write(path: Path, pixels: np.ndarray, **attributes: object) -> None:
-    """By another program than ours."""
+    """Writes a picture with OpenImageIO instead of realcam."""
     spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], str(pixels.dtype))
     if pixels.shape[2] == 4:
         spec.alpha_channel = 3
@@ -315,7 +315,7 @@ def test_a_name_with_a_null_character_is_none(image: rc.Image, tmp_path: Path, m
 
 
 def textured(folder: Path, name: str) -> np.ndarray:
-    """What the texture of a scene file is, seen by a camera: the mean radiance over pi of a white light."""
+    """Albedo of a scene file's texture as photographed: radiance of a card under a uniform sky, relative to the sky."""
     (folder / "card.mtl").write_text(f"newmtl m\nKd 1 1 1\nmap_Kd {name}\n")
     (folder / "card.obj").write_text(
         "mtllib card.mtl\nusemtl m\nv -1 -1 -2\nv 1 -1 -2\nv 1 1 -2\nv -1 1 -2\n"
@@ -343,8 +343,8 @@ def test_alpha_is_not_multiplied_into_a_texture(tmp_path: Path, kind: str) -> No
     picture = np.broadcast_to(pixel.astype(dtype), (8, 8, 4))[..., :channels]
     write(tmp_path / f"card.{suffix}", np.ascontiguousarray(picture), **{"oiio:UnassociatedAlpha": 1})
     expected = srgb_to_linear(np.array([200, 100, 50]) / 255)
-    # The card is lit by the whole of its half of the sky: what it sends back is its reflectance, but for the noise of
-    # 1024 cosine-distributed samples of a constant, which is none, and 8-bit codes: half a code is 1.2% of the darkest.
+    # The card is lit by its whole half of the sky, so that its radiance is its reflectance. 1024 cosine-distributed
+    # samples of a constant have no noise; half a code of 8 bits is 1.2% of the darkest channel.
     np.testing.assert_allclose(textured(tmp_path, f"card.{suffix}"), expected, rtol=0.012)
 
 
@@ -363,11 +363,11 @@ def test_a_picture_that_claims_too_many_pixels_is_refused(tmp_path: Path) -> Non
     write_png(path, 40000, 8, 2, b"\0" * 100)
     with pytest.raises(rc.ImageFileError, match="40000 x 40000 pixels; at most 128 million"):
         rc.read_environment(path)
-    # As many as are allowed, and more than its bytes could be made into.
+    # The size is within the limit, but these bytes could not decompress to that many pixels.
     write_png(path, 11000, 8, 2, b"\0" * 100)
     with pytest.raises(rc.ImageFileError, match=r"11000 x 11000 pixels, and [0-9]+ bytes cannot hold so many"):
         rc.read_environment(path)
-    # What compresses best is none: 1 bit a pixel, all the same.
+    # Highly compressible files are accepted: here 1 bit a pixel, all pixels equal.
     write_png(tmp_path / "white.png", 4096, 1, 0, (b"\0" + b"\xff" * 512) * 4096)
     assert (rc.read_environment(tmp_path / "white.png") == 1).all()
 
@@ -379,7 +379,7 @@ def test_a_picture_of_very_many_channels_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_broken_file_is_quoted_whatever_its_bytes_are(image: rc.Image, tmp_path: Path) -> None:
-    """OpenImageIO names the type of an attribute as it stands in the file, and that may be no UTF-8."""
+    """OpenImageIO quotes the type of an attribute with the bytes of the file, which may be invalid UTF-8."""
     path = tmp_path / "picture.exr"
     image.save(path)
     whole = path.read_bytes()

@@ -96,7 +96,7 @@ def test_a_slanted_plane(device: str) -> None:
     pupil = -taken_by.entrance_pupil_position_m[2]
     # (x, y, -z) = s (slope_x, slope_y, 1) behind the pupil, on n . p = n_z * -3.
     distance = (3 - pupil) * SLANT[2] / (SLANT[2] - SLANT[0] * slopes[..., 0])
-    # Slopes are means over 64 x 64 random places in a pixel: to 1% of its width, 1e-4 of the distance at this slant.
+    # Slopes are means over 64 x 64 random points in a pixel: to 1% of its width, 1e-4 of the distance at this slant.
     np.testing.assert_allclose(image.layers["depth_middle"], pupil + distance, rtol=2e-4)
     # Over a pixel the distance changes by 1% of itself; the mean of 64 stratified samples is nearer to the middle's.
     np.testing.assert_allclose(image.layers["depth"], pupil + distance, rtol=2e-3)
@@ -187,7 +187,7 @@ def test_the_circle_of_confusion_is_the_thin_lens_formula(device: str) -> None:
 
 
 def magnification_of(of: rc.Lens) -> float:
-    """Of the plane in focus, from rays of the pinhole model: film height over object height."""
+    """Magnification in the plane in focus (film height over object height), from rays of the pinhole model."""
     taken_by = rc.Camera(of, film=rc.Film(2, 2, (2, 1)), model="pinhole")
     rays = taken_by.generate_rays(spp=4096)
     pupil = np.asarray(taken_by.entrance_pupil_position_m)
@@ -228,7 +228,7 @@ def test_a_vignetted_corner_keeps_its_depth(device: str) -> None:
     middle = image.layers["depth_middle"]
     passes = ~np.isnan(middle)
     np.testing.assert_allclose(middle[passes], 3.0, rtol=1e-5)
-    # At the edge of the image circle a pixel may be lit and its middle dark, and then it has little light.
+    # At the edge of the image circle a pixel may get light but none at its centre; the pixel then has little light.
     assert not (passes & ~lit).any()
     assert light[lit & ~passes].max() < 0.05 * light.max()
     assert (image.layers["object_id"][~passes] == 0).all()
@@ -275,7 +275,7 @@ def test_where_nothing_is_met(device: str) -> None:
     assert np.isnan(layers["position_middle"]).all()
     for name in ("normal", "normal_middle", "albedo", "object_id", "material_id"):
         assert (layers[name] == 0).all(), name
-    # As of what is infinitely far: rays all over the pupil are parallel there, and as wide in the plane in focus.
+    # For a point at infinity, rays from all over the pupil are parallel, as wide in the plane in focus as the pupil.
     first = lens().first_order()
     expected = first.entrance_pupil_diameter_mm * magnification_of(lens())
     np.testing.assert_allclose(layers["circle_of_confusion_mm"], expected, rtol=2e-4)
@@ -371,8 +371,8 @@ def test_variance_includes_light_that_starts_at_lamps(
     actual = np.stack([image.pixels for image in images]).astype(float).var(axis=0, ddof=1).sum()
     told = np.stack([image.layers["variance"] for image in images]).astype(float).mean(axis=0).sum()
     # A starburst lights four pixels. Each figure of a pixel has one degree of freedom and 100 seeds, its variance 99:
-    # the quotient of the sums has a deviation of sqrt(2 * 2 / 100 / 4) = 0.1. Four of them. Even samples have less
-    # noise than is told.
+    # the quotient of the sums has a deviation of sqrt(2 * 2 / 100 / 4) = 0.1. Four of them are allowed. Stratified
+    # samples have less noise than reported.
     assert least < actual / told < 1.4
 
 
@@ -385,7 +385,7 @@ def test_variance_scales_with_samples_and_exposure(device: str) -> None:
         return image.layers["variance"].astype(float)
 
     np.testing.assert_allclose(told(64, 0.25), told(64, 1.0) / 16, rtol=1e-6)
-    # Of 16 pixels, the variance of 64 samples is known to 3%.
+    # The variance of 64 samples, over 16 pixels, is known to 3%.
     assert told(64, 1.0).mean() / told(1024, 1.0).mean() == pytest.approx(16, rel=0.15)
     assert np.isnan(told(1, 1.0)).all()
 

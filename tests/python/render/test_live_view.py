@@ -62,7 +62,7 @@ def test_a_view_that_stands_still_after_focusing_is_any_sessions_picture(scene: 
     # On a GPU, the pupils of the moving lens were found near one another.
     assert samples == ([16, 24, 32] if on == "cpu" else [8, 16, 24])
     whole = rc.render(scene, camera_now, effects=(), spp=samples[-1], seed=3, max_bounces=1, device=on)
-    # Of the same samples, float sums in another order: 1e-4 would be another table of the pupil.
+    # The samples are the same, and float sums are in another order; another pupil table would differ by 1e-4.
     np.testing.assert_allclose(live.image().pixels, whole.pixels, rtol=2e-6, atol=1e-9)
 
 
@@ -110,7 +110,7 @@ def live_picture_of(scene: rc.Scene, device: str) -> tuple[rc.LiveView, Any, Any
 def test_the_picture_on_the_cpu_is_that_of_render(scene: rc.Scene) -> None:
     live, pixels, _ = live_picture_of(scene, "cpu")
     assert isinstance(pixels, np.ndarray)
-    # What the view collects next does not change it.
+    # Later samples of the view must not change this array.
     before = pixels.copy()
     live.shoot(camera(), spp=8).codes  # noqa: B018
     del live
@@ -195,7 +195,7 @@ def test_the_picture_on_the_gpu_is_that_of_render(scene: rc.Scene) -> None:
     torch = pytest.importorskip("torch")
     shared = torch.from_dlpack(pixels)
     assert shared.data_ptr() == pixels.__cuda_array_interface__["data"][0]
-    # It outlives the view, and what the view collects next does not change it.
+    # The tensor outlives the view, and later samples of the view do not change it.
     before = shared.sum().item()
     live.shoot(camera(exposure_time_s=0.25), spp=8).codes  # noqa: B018
     del live, pixels
@@ -242,7 +242,7 @@ WIDE = rc.Camera(LENS, film=rc.Film(36, 24, (1200, 800)), position=(0, 1, 3), lo
 
 
 def seconds_of_one_sample(live: rc.LiveView) -> float:
-    """Of each pixel of WIDE. No stop takes longer, and it scales with tools that slow down the GPU."""
+    """Time for one sample of each pixel of WIDE. No stop takes longer; it scales with tools that slow the GPU down."""
     live.shoot(WIDE, spp=1).codes  # noqa: B018
     start = time.perf_counter()
     live.shoot(WIDE, spp=1).codes  # noqa: B018
@@ -259,8 +259,8 @@ def test_cancel_takes_milliseconds(scene: rc.Scene) -> None:
         time.sleep(0.1)
         start = time.perf_counter()
         live.cancel()
-        # Each thread ends the sample that it has begun. The rest is for calls, for blocks that only look at the flag,
-        # and for a host that has other things to do.
+        # Each thread finishes the sample that it has begun. The remaining time allows for calls, for blocks that only
+        # check the flag, and for a busy host.
         assert time.perf_counter() - start < 0.03 + 2 * one_sample
         with pytest.raises(rc.Cancelled):
             frame.codes  # noqa: B018
@@ -304,7 +304,7 @@ def test_cancel_leaves_a_whole_frame_or_none(scene: rc.Scene) -> None:
         live.cancel()
         live.shoot(camera(), spp=spp)
         second = live.shoot(camera(), spp=spp)
-        # From before the first frame's end to after the second's.
+        # The cancellation comes at times from before the first frame's end to after the second's.
         stop = threading.Timer(whole * i / 4, live.cancel)
         stop.start()
         try:

@@ -82,7 +82,7 @@ def test_renders_side_by_side_do_not_disturb_each_other() -> None:
 
 
 def test_more_samples_than_one_visit_of_a_tile_continue_the_sequence() -> None:
-    """Passes of up to 256 samples add up: no sample twice, none left out."""
+    """Passes of up to 256 samples add up: every sample is used exactly once."""
     many = rc.render(small_scene(), camera(8, 7), effects=(), spp=700, seed=1).pixels
     thin = camera(8, 7, "thin")  # which stops no sample, so that nothing of it is balanced
     rays = thin.generate_rays(spp=700, seed=1)
@@ -139,7 +139,7 @@ def test_a_progress_function_ends_the_picture_at_once(
         rc.render(small_scene(), camera(2000, 1700), effects=(), spp=20000, progress=progress)  # type: ignore[arg-type]
     assert len(calls) == 1
     assert calls[0] < 0.9
-    # Nothing is left over in the backend.
+    # The backend has no leftover state.
     assert small_picture().pixels.shape == (4, 4, 3)
 
 

@@ -16,7 +16,7 @@ import realcam as rc
 from ..programs import PROGRAM
 
 DEFAULTS = rc.RenderSettings()
-# Each setting at least once, other than by default; as words of the constructor.
+# Each setting occurs at least once with a value other than its default; given as arguments of the constructor.
 OTHERS: list[dict[str, Any]] = [
     {"spp": 7, "seed": 2**32 - 1, "max_bounces": 0, "threads": 3},
     {"spp": "auto"},
@@ -133,7 +133,7 @@ def test_all_that_take_pictures_have_the_same_defaults() -> None:
     live = rc.LiveView(scene, device="cpu").settings  # planning takes longer than a frame
     assert live == DEFAULTS.with_(effects=(), max_bounces=1)
     assert rc.Shot(scene, camera).settings == DEFAULTS
-    # What "auto" comes to is all that changes.
+    # Only settings that are "auto" change: to their planned values.
     planned = DEFAULTS.with_(effects=plan.effects, max_bounces=plan.max_bounces)
     assert rc.render(scene, camera, device="cpu").settings == planned
     assert rc.Session(scene, camera, device="cpu").settings == planned
@@ -144,7 +144,7 @@ def test_shot_files_and_the_command_line_have_the_same_defaults(tmp_path: Path) 
     (tmp_path / "quad.obj").write_text("v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n")
     (tmp_path / "shot.toml").write_text('format = 1\nscene = "quad.obj"\nresolution = [6, 4]\n')
     shot = rc.Shot.load(tmp_path / "shot.toml", device="cpu")
-    # But for the samples: who takes one picture waits for its noise, and a program for as many samples each time.
+    # Only the stopping rule differs: shots and the command line stop at a noise goal, functions at a number of samples.
     assert shot.settings == DEFAULTS.with_(spp="auto", noise_codes=2, seconds=60)
     image = shot.render(device="cpu")
     command = [*PROGRAM, "render", "quad.obj", "-o", "a.png", "--json", "--device", "cpu", "--resolution", "6x4"]

@@ -1,4 +1,4 @@
-"""rc.Session: samples that are added one after the other, what begins anew and what does not, and stopping."""
+"""rc.Session: adding samples step by step, changes that start a new picture and changes that do not, and stopping."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ def test_a_stop_keeps_what_was_taken(device: str) -> None:
 
 
 def test_a_stop_leaves_no_tile_half_done() -> None:
-    """With dispersion pixels share samples: those that other pixels of a tile have not had could not count here."""
+    """With dispersion, pixels share samples, so that all pixels of a tile must have the same samples."""
     session = rc.Session(room(), camera(200, 150), device="cpu", effects=("dispersion",))
     add_until_stopped(session, 0.3)
     samples = session.samples
@@ -177,7 +177,7 @@ def test_the_samples_after_a_stop_are_others(device: str) -> None:
     session.add(1)
     after = session.image().pixels * (counts + 1.0) - before * counts
     first = rc.render(room(), camera(200, 150), effects=(), spp=1, seed=3, device=device).pixels
-    # The same samples would differ by roundings only; others may agree in dark or evenly lit pixels.
+    # Repeated samples would differ by roundings only. New samples may agree in dark or uniform pixels.
     assert (np.abs(after - first) > 1e-3 * first.max()).mean() > 0.1
 
 
@@ -190,7 +190,7 @@ def test_threads_take_turns() -> None:
         thread.join()
     assert (session.samples == 48).all()
     whole = rc.render(room(), camera(), effects=(), spp=48, device="cpu")
-    # The same samples, in sums of 8.
+    # The samples are the same, summed in groups of 8.
     np.testing.assert_allclose(session.image().pixels, whole.pixels, rtol=1e-6)
 
 

@@ -239,7 +239,7 @@ def test_textures_of_a_material_are_files(tmp_path: Path) -> None:
         load(tmp_path, text.replace("t.png", "none.png"))
 
 
-# What follows the two lines of a shot with a scene, and what is said of it.
+# Lines appended to the first two lines of a shot with a scene, and the expected error message.
 MISTAKES = [
     ("foccus_m = 2", r':3: unknown key "foccus_m" \(did you mean "focus_m"\?\)'),
     ("focus_m = 'near'", r':3: "focus_m" must be a number of metres, inf'),
@@ -321,7 +321,7 @@ def test_mistakes_name_file_and_line(tmp_path: Path, text: str, message: str) ->
     ],
 )
 def test_where_the_samples_end(text: str, settings: dict[str, object], tmp_path: Path) -> None:
-    """As docs/sampling.md says it."""
+    """The stopping rules are those of docs/sampling.md."""
     shot = load(tmp_path, f"format = 1\nscene = 'quad.obj'\n{text}")
     assert shot.settings == rc.RenderSettings(**settings)
 
@@ -346,7 +346,7 @@ def test_a_shot_is_rendered_with_all_its_settings() -> None:
 
 
 def test_another_lens_need_not_be_as_fast_as_the_one_of_the_shot(tmp_path: Path) -> None:
-    """What a shot says of its own lens is no mistake of another one; what is said of the other one is."""
+    """Values that a shot states for its own lens are no error for another lens; values given with that lens are."""
     text = "format = 1\nscene = 'quad.obj'\nlens = 'double-gauss-50mm'\nf_number = 2.1\nfilm_mm = [36, 24]\n"
     load(tmp_path, text + "exposure_time_s = 0.01\n")
     slow = rc.Lens.load("heliar-100mm")

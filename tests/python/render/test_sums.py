@@ -1,4 +1,4 @@
-"""What a film adds up: a million samples, light and dark together, short and long exposures."""
+"""Accumulation on the film: a million samples, light and dark together, short and long exposures."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_a_million_samples_of_a_pixel_do_not_drift(device: str, backend: str) ->
 
 
 def test_dim_light_beside_a_light_1e8_times_as_bright(device: str, backend: str) -> None:
-    """A pixel of which some samples in a million see a speck of radiance 1e8, and the others a wall of radiance 1."""
+    """In one pixel, some samples in a million see a speck of radiance 1e8, and the others a wall of radiance 1."""
     camera = one_pixel()
 
     def view(wall: float, speck: float) -> rc.Scene:
@@ -54,7 +54,7 @@ def test_dim_light_beside_a_light_1e8_times_as_bright(device: str, backend: str)
     both, bright, dim = (exposure(view(*v), camera, device, MILLION) for v in ((1, BRIGHT), (0, BRIGHT), (1, 0)))
     assert bright > 10 * dim > 0
     tried = "1 pixel, 1e6 samples; a speck 1e8 times as bright as the wall"
-    # Three roundings of the picture, of which the largest value is the sum.
+    # Three pictures are rounded, and the sum `both` is the largest of them.
     limit = 3 * ROUNDING * both / dim
     worst = abs(both - bright - dim) / dim
     hold(Measurement("Sums", "dim light in a pixel", tried, backend, "float32", worst, limit, "relative"))

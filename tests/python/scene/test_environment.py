@@ -52,7 +52,7 @@ def pixel_directions(height: int, width: int, parts: int) -> tuple[np.ndarray, n
 
 
 def irradiance(image: np.ndarray, normal: tuple[float, float, float]) -> float:
-    """Of a plane under an image (H, W) of radiance: the midpoint rule on 32 x 32 parts of each pixel."""
+    """Irradiance of a plane under an image (H, W) of radiance, by the midpoint rule on 32 x 32 parts of each pixel."""
     directions, solid = pixel_directions(*image.shape, 32)
     n = np.asarray(normal, float) / np.linalg.norm(normal)
     return float((image[..., None] * np.maximum(0, directions @ n) * solid).sum())
@@ -122,7 +122,7 @@ def test_closed_form_of_a_bright_pixel_overhead() -> None:
     assert irradiance(image, (0, 1, 0)) == pytest.approx(closed, rel=1e-4)
     plane, camera = facing((0, 1, 0), 0.8)
     measured = scenes.radiance(plane.with_environment(grey(image)), camera, spp=256)
-    # As above; four times the samples.
+    # Four times the samples of the test above, and half its tolerance.
     assert measured.mean() == pytest.approx(0.8 / math.pi * closed, rel=0.01)
 
 

@@ -38,14 +38,14 @@ def xyz_of(x: float, y: float) -> np.ndarray:
 
 
 def xyz_from(chromaticities: tuple[float, ...]) -> np.ndarray:
-    """The primaries, in such shares that all together are the white of Y = 1 (SMPTE RP 177)."""
+    """Columns: XYZ of the primaries, scaled so that their sum is the white of Y = 1 (SMPTE RP 177)."""
     pairs = np.reshape(chromaticities, (4, 2))
     primaries = np.column_stack([(x, y, 1 - x - y) for x, y in pairs[:3]])
     return primaries * np.linalg.solve(primaries, xyz_of(*pairs[3]))
 
 
 def adapted(chromaticities: tuple[float, ...]) -> np.ndarray:
-    """Rec. 709 from such colours, white to white."""
+    """Matrix to Rec. 709 from colours of these primaries, with chromatic adaptation of the white (Bradford)."""
     from_xyz = xyz_from(chromaticities)
     cones = BRADFORD @ xyz_of(0.3127, 0.3290) / (BRADFORD @ from_xyz.sum(axis=1))
     return REC709_FROM_XYZ @ np.linalg.inv(BRADFORD) @ np.diag(cones) @ BRADFORD @ from_xyz
@@ -141,7 +141,7 @@ def test_openexr_colours_in_xyz_and_in_rec_709(tmp_path: Path) -> None:
 
 
 def test_the_display_window_is_the_picture(tmp_path: Path) -> None:
-    """What the data window leaves is black, and what lies beyond is cut off, for any place of either."""
+    """Pixels outside of the data window are black, and data beyond the display window is cropped, wherever they lie."""
     for data, display in (
         ((0, 0), (0, 0, 15, 15)),
         ((0, 0), (0, -8, 15, 7)),
@@ -178,7 +178,7 @@ def test_small_negative_numbers_count_as_0_with_a_warning(tmp_path: Path) -> Non
             rc.read_environment(tmp_path / "wrong.exr")
 
 
-# Of OpenEXR's cube map: what each of the six squares shows to the right and upwards, seen from inside.
+# OpenEXR's cube map: direction of each of the six faces, then its right and up directions as seen from inside.
 FACES = [
     ((1, 0, 0), (0, 0, 1), (0, 1, 0)),
     ((-1, 0, 0), (0, 0, -1), (0, 1, 0)),
@@ -195,7 +195,7 @@ def light_in(direction: np.ndarray) -> np.ndarray:
 
 
 def directions_of(height: int, width: int) -> np.ndarray:
-    """Of realcam's environments: row 0 up, the middle column towards -z, +x to its right."""
+    """Pixel directions of realcam's environment maps: row 0 up, the middle column towards -z, +x to its right."""
     polar = np.pi * (np.arange(height) + 0.5)[:, None] / height
     azimuth = 2 * np.pi * ((np.arange(width) + 0.5) / width - 0.5)
     up = np.broadcast_to(np.cos(polar), (height, width))
@@ -238,7 +238,7 @@ def test_rotation_and_scale_of_an_environment(tmp_path: Path) -> None:
     turned = triangle.with_environment(tmp_path / "sky.exr", scale=3, rotation_deg=90)
     seen = rc.render(turned, aside, effects=(), spp=4, max_bounces=0)
     np.testing.assert_allclose(seen.pixels, 3 * ahead.pixels, rtol=1e-5)
-    # By half a column: the mean of two, with the same light in all of them.
+    # A rotation by half a column averages adjacent columns, and keeps the total light.
     half = triangle.with_environment(SKY, rotation_deg=360 / 32)
     assert half == triangle.with_environment((SKY + np.roll(SKY, -1, axis=1)) / 2)
     assert triangle.with_environment(5, scale=2, rotation_deg=33) == triangle.with_environment(10)

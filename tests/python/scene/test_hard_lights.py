@@ -58,7 +58,7 @@ def test_camera_inside_of_a_ball(device: str, backend: str) -> None:
 
 
 def test_sun_on_the_optical_axis(device: str, backend: str) -> None:
-    """From straight behind, a wall has albedo / pi times its light; straight into the lens, it has none at all."""
+    """With the sun behind the camera, a wall has albedo / pi times the sun's illuminance; with the sun ahead, 0."""
     worst, against = 0.0, 0.0
     for axis in AXES:
         forward = np.asarray(axis, float)
@@ -103,7 +103,7 @@ def test_far_from_the_origin(size: float, device: str, backend: str) -> None:
 
 
 def test_silhouettes_lie_where_projection_puts_them(device: str, backend: str) -> None:
-    """A card's slanting edge, the card from 1 mm to 1e7 m large and as far away as it is large, or a million times."""
+    """Slanted edge of a card 0.2 m to 1e7 m away; its half-width is the distance, or 1e6 times that up to 1e9 m."""
     shift, edges = 0.0, 0
     for distance in (0.2, 3.0, 1e3, 1e7):
         for half in (distance, 1e6 * distance):
@@ -142,9 +142,9 @@ def test_lamp_close_to_a_floor(distance: float, device: str, backend: str) -> No
         irradiance = scenes.polygon_irradiance(points, np.array([0.0, 1.0, 0.0]), lamp[0])
         expected = pixel_means(rays, ALBEDO / math.pi * 1e4 * irradiance)
         scene = scenes.scene_of(floor, lamp)
-        # The rows that see the floor a few gaps beside the lamp.
+        # Only rows that see the floor at least a few gaps away from the lamp.
         beside = slice(8, None)
-        # By samples of the lamp alone, and by rays that the floor scatters, too: neither floor nor lamp lights itself.
+        # Samples of the lamp alone (0), and rays scattered by the floor as well (1): neither surface lights itself.
         for bounces in (0, 1):
             measured = scenes.radiance(scene, camera, spp=1024, max_bounces=bounces, device=device)[..., 0]
             worst = max(worst, abs(float(measured[beside].mean() / expected[beside].mean()) - 1))

@@ -70,7 +70,7 @@ def test_distance_of_what_is_photographed(nearest: float, farthest: float, devic
     rays, worst = camera.generate_rays(spp=16), 0.0
     distances = np.geomspace(nearest, farthest, 1 + round(math.log10(farthest / nearest)))
     for distance in distances:
-        # Where there is room in front of the lens, the wall is slanted.
+        # The wall is slanted if there is room in front of the lens.
         normal, right, up = tilted_axes((-0.1, 0.2, 1) if distance > 0.05 else (0, 0, 1))
         middle = np.array([0, 0, -front - distance])
         light = middle + distance * (0.5 * normal + 0.2 * right)
@@ -191,7 +191,7 @@ def test_slivers(aspect: str, device: str, backend: str) -> None:
 
 
 def box_of_slivers(size: float, gap: float) -> rc.Scene:
-    """A closed black box around the origin, each face cut by lines of which some are but `gap` of the size apart."""
+    """A closed black box around the origin. Cuts divide each face, some only about `gap` times the size apart."""
     rng = np.random.default_rng(1)
     cuts = np.concatenate([[-1, 1], rng.uniform(-0.9, 0.9, 8)])
     cuts = np.unique(np.concatenate([cuts, cuts[2:] + gap * rng.uniform(0.5, 2, 8)]))
@@ -211,7 +211,7 @@ def box_of_slivers(size: float, gap: float) -> rc.Scene:
 
 
 def test_no_light_leaks_between_slivers(device: str, backend: str) -> None:
-    """In a closed box under a bright sky, through a fisheye that sees half of it."""
+    """The camera is in a closed box under a bright sky, and its fisheye sees half of the box."""
     lens = rc.Lens.load("fisheye-10mm")
     lit_pixels, samples = 0, 0
     for size in (0.3, 1.0, 1e3, 1e7):

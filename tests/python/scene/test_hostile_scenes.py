@@ -28,7 +28,7 @@ def test_pipes_and_devices_are_refused_at_once(tmp_path: Path, suffix: str) -> N
 
 
 def test_names_that_are_no_utf_8(tmp_path: Path) -> None:
-    """They come as text with U+FFFD, and a file's own name as Python has it."""
+    """Names in files are read with U+FFFD for invalid bytes; a file's own name is accepted in Python's forms."""
     (tmp_path / "l.mtl").write_bytes(b"newmtl gr\xfcn\nd 0.5\nmap_Kd gr\xfcn.png\n")
     path = os.fsencode(tmp_path) + b"/\xff.obj"
     Path(os.fsdecode(path)).write_bytes(b"mtllib l.mtl\nusemtl gr\xfcn\n" + TRIANGLE.encode() + b"o gr\xfcn\nf 1 2 3\n")
@@ -89,7 +89,7 @@ def test_ctrl_c_ends_the_reading(tmp_path: Path) -> None:
             with pytest.raises(KeyboardInterrupt):
                 signal.setitimer(signal.ITIMER_REAL, share * whole)
                 rc.Scene.load(path)
-            # It asks every 0.02 s; the rest is what a busy machine may take.
+            # The reader checks for signals every 0.02 s; the remaining time allows for a busy machine.
             assert time.perf_counter() - start < share * whole + 1
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)

@@ -1,4 +1,4 @@
-"""Objects that stand in a scene: the same picture as of the same triangles, each put in its place by numpy."""
+"""Instances in a scene: the same picture as of the same triangles, each transformed by numpy."""
 
 from __future__ import annotations
 
@@ -165,7 +165,7 @@ def test_a_plain_as_an_object_is_as_exact_as_the_ground(device: str) -> None:
 
 
 def test_a_plain_that_stands_twice_near_the_camera(device: str) -> None:
-    """No sun through a roof that shares its triangles with the floor: either is exact in its own place."""
+    """No sun through a roof that is an instance of the same plain as the floor: each is exact at its own position."""
     plain = scene_of(quad((0, 0, 0), 1e7, right=(1, 0, 0), up=(0, 0, -1), diffuse=0.5))
     sun = scene_of(quad((0, 0, 1e11), 1)).with_sun((0.3, -1, 0), (8e4, 8e4, 8e4))
     between = rc.Camera(
@@ -189,7 +189,7 @@ def test_a_floor_made_by_scale_takes_shadows(device: str, size: float) -> None:
 
 @pytest.mark.parametrize("unit", [1e-6, 1e5])
 def test_objects_in_other_units(device: str, unit: float) -> None:
-    """Smooth normals and textures need places within triangles that are as small in a file of micrometres as points."""
+    """Smooth normals and textures need points within triangles as precise as the object's unit, even micrometres."""
     vertices, triangles, normals, uvs = ball(16)
     small = as_scene((vertices * unit, triangles, normals, uvs))
     expected = GROUND.with_instance(as_scene(ball(16)), placed(0, 0.7, -1))
@@ -311,7 +311,7 @@ def test_an_instance_that_cannot_be_moved_is_told(which: object, place: object, 
 
 
 def places_of(scene: rc.Scene) -> dict[str, list[float]]:
-    """Where the origin of each instance is."""
+    """Position of each instance's origin."""
     return {name: list(matrix[:3, 3]) for name, matrix in scene.instances}
 
 

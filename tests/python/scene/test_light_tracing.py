@@ -27,7 +27,7 @@ def camera(lens: rc.Lens | None = None, film: rc.Film = FILM, **more: object) ->
 
 
 def behind() -> rc.Scene:
-    """The one triangle that a scene must have, where nobody looks."""
+    """The one triangle that a scene must have, out of the camera's view."""
     return rc.Scene.from_arrays(np.array([[0.0, 0.0, 1e5], [1.0, 0.0, 1e5], [0.0, 1.0, 1e5]]), [[0, 1, 2]])
 
 
@@ -39,7 +39,7 @@ def photograph(scene: rc.Scene, at: rc.Camera, tracing: str, device: str, **sett
 
 
 def stop_in_front(radius_mm: float, film_shift_mm: float) -> rc.Lens:
-    """A singlet whose stop is its entrance pupil; the film is beside the focus."""
+    """A singlet whose stop is its entrance pupil; the film is `film_shift_mm` behind the focus."""
     surfaces = [
         rc.Stop(clear_semi_diameter_mm=radius_mm, thickness_mm=0),
         rc.Surface(radius_of_curvature_mm=120, thickness_mm=4, material=1.6, clear_semi_diameter_mm=15),
@@ -57,7 +57,7 @@ def flux(picture: np.ndarray, film: rc.Film) -> float:
 
 
 def test_all_light_of_a_point_in_the_stop_reaches_the_film(device: str, backend: str) -> None:
-    """Its luminous intensity times the solid angle of the stop, wherever it stands: closed form."""
+    """Closed form: the luminous intensity times the solid angle of the stop, for any position of the point."""
     worst = 0.0
     for distance_m, tangent in ((0.3, 0.0), (2.0, 0.05), (1e3, -0.1)):
         place = (tangent * distance_m, 0.5 * tangent * distance_m, -distance_m)
@@ -169,7 +169,7 @@ def before_a_dim_wall() -> rc.Scene:
 
 
 def led_in_a_dim_panel() -> rc.Scene:
-    """The same in the plane of the wall, in a hole of it."""
+    """A small lamp in the plane of the panel, in a hole of it."""
     left, right = ((x, 0, -1) for x in (-0.952, 1.052))
     above, below = ((0.05, y, -1) for y in (1.002, -1.002))
     return scenes.scene_of(
@@ -259,12 +259,12 @@ def test_all_techniques_see_the_same(case: str, device: str) -> None:
         error = np.sqrt((alone.var(axis=0) + other.var(axis=0)) / (len(seeds) - 1))
         lit = alone.mean(axis=0) > 1e-6 * alone.mean()
         difference = np.abs(alone.mean(axis=0) - other.mean(axis=0))
-        # Where samples of pixels meet a lamp seven times on average, once in a thousand tests they never do. What one
-        # brings follows from Poisson's law: the variance over the mean.
+        # A lamp that pixel samples hit seven times on average is missed once in a thousand tests. The light of one hit
+        # follows from Poisson statistics: the variance over the mean.
         met_once = float((alone.var(axis=0)[lit] / alone.mean(axis=0)[lit]).max()) / len(seeds)
         missed = np.where(alone.mean(axis=0) < 7 * met_once, 7 * met_once, 0)
-        # Student's t with some seven degrees of freedom, in 72 blocks: above 7 once in a thousand tests. Float32 and
-        # the unit of the sums add what is left.
+        # Student's t with some seven degrees of freedom, in 72 blocks: above 7 once in a thousand tests. The last term
+        # covers float32 and the unit of the sums.
         assert (difference <= 7 * error + missed + 1e-5 * alone.mean(axis=0).max()).all(), (
             case,
             tracing,
@@ -279,7 +279,7 @@ def test_all_techniques_see_the_same(case: str, device: str) -> None:
         ("on the axis", 0.05),
         ("a hundred", 0.1),
         ("behind an edge", 0.1),
-        # Of the lamp's pixel, a sixth of the samples meet it.
+        # A sixth of the samples of the lamp's pixel hit it.
         ("in focus", 0.1),
         ("a thin tube in focus", 0.1),
         # The wall's own noise is left.
@@ -299,7 +299,7 @@ def test_noise_falls_where_lamps_are_out_of_focus_and_nowhere_rises(case: str, s
 
 
 def test_a_fine_mesh_in_focus_is_left_to_samples_of_pixels(device: str) -> None:
-    """Its triangles are smaller than pixels, but next to others. Where its edges do not reach, nothing is traced."""
+    """The mesh's triangles are smaller than pixels but adjacent. Light is traced only near the mesh's outer edges."""
     at = camera(position=(0, 0, 0))
     by_pixels, both = (photograph(fine_mesh(), at, tracing, device, spp=4) for tracing in ("off", "weighted"))
     lit = by_pixels.min(axis=2) > 0
@@ -327,7 +327,7 @@ def grid_of_lamps(lens: rc.Lens, share: float) -> rc.Scene:
 
 @pytest.mark.parametrize("share", [0.006, 1e-4, 0.3])
 def test_no_lamp_in_focus_is_missed(share: float, device: str) -> None:
-    """96 lamps smaller than a pixel in each picture, of which samples of pixels miss up to all."""
+    """96 lamps in each picture, each smaller than a pixel. Samples from the pixels may miss any or all of them."""
     lens = rc.Lens.load("machine-vision-10mm").focused(5.0)
     at = camera(lens, rc.Film(7.2, 4.8, (72, 48)), position=(0, 0, 0))
     scene = grid_of_lamps(lens, share)
@@ -344,7 +344,7 @@ def test_no_lamp_in_focus_is_missed(share: float, device: str) -> None:
 
 @pytest.mark.parametrize("half_width_m", [2e-4, 2e-3])
 def test_a_lamp_in_focus_has_all_its_light(half_width_m: float, device: str) -> None:
-    """Its radiance times its area and the solid angle of the stop: closed form."""
+    """Closed form: radiance times the lamp's area and the solid angle of the stop."""
     bare = stop_in_front(2.0, 0.0)
     lens = rc.Lens(surfaces=bare.surfaces, film_distance_mm=bare.film_distance_mm).focused(5.0)
     film = rc.Film(3.6, 2.4, (36, 24))

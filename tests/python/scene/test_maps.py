@@ -49,7 +49,7 @@ def test_a_map_of_one_colour_is_the_number_times_its_channel(
     mapped = picture(PBR(**{number: 0.8, texture: channel(index, 0.5, 0.9)}, **rest))
     expected = picture(PBR(**{number: 0.4}, **rest))
     without = picture(PBR(**{number: 0.8}, **rest))
-    # The same paths, but for roundings.
+    # The paths are the same, except for roundings.
     np.testing.assert_allclose(mapped, expected, rtol=1e-3)
     assert np.abs(without / expected - 1).max() > 0.02
 
@@ -122,7 +122,7 @@ def test_fractions_stay_floats() -> None:
 
 
 def panel(emission: np.ndarray | None, lit: int) -> rc.Scene:
-    """A floor under 64 small lamps of one material, of which a map lets one alone shine; or one of its own."""
+    """A floor under 64 small lamps: of one material whose map leaves one lamp lit, or with a material for it."""
     corners, faces, uvs, owners = [], [], [], []
     floor, _ = scenes.quad((0, 0, -2), 0.96, 0.64)
     corners.append(floor)

@@ -56,7 +56,7 @@ def test_a_material_is_replaced_by_name_and_by_number() -> None:
         changed = scene.with_material(which, red)
         assert changed.materials == {"wood": red.replace(name="wood"), "material 1": GLOSS}
     assert scene.materials["wood"] == WOOD
-    # Of a radiance of 1 a wall of this colour sends back its reflectance.
+    # Under a radiance of 1, the radiance of a wall of this colour equals its reflectance.
     np.testing.assert_allclose(
         scenes.radiance(wall([WOOD]).with_material("wood", red), scenes.pinhole())[8, 12], (1, 0, 0), atol=1e-5
     )
@@ -97,7 +97,7 @@ def test_a_replaced_texture_is_forgotten() -> None:
     assert both.materials["wood.2"].texture is not None
 
 
-# Each is the same grey or colour, as the same 8-bit code.
+# All are the same grey or colour, from the same 8-bit codes.
 CODES = np.array([[0, 51], [153, 255]])
 SAME = {
     "grey uint8": CODES.astype(np.uint8),

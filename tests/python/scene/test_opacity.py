@@ -57,7 +57,8 @@ def test_the_shadow_of_plates(opacity: float) -> None:
 
 
 def opacity_seen(camera: rc.Camera, row: np.ndarray) -> tuple[np.ndarray, rc.CameraRays]:
-    """Of each ray at holed(-2) with a map whose rows are all this one: linear between the texels' middles."""
+    """Opacity at each ray's point on holed(-2) for a map whose rows all equal `row`, linear between texel centres; and
+    the rays."""
     points, rays = scenes.points_on_plane(camera, 16, (0, 0, -2), (0, 0, 1))
     return np.interp((points[:, 0] + 3) / 6 * len(row) - 0.5, np.arange(len(row)), row / 255), rays
 
@@ -74,7 +75,7 @@ def test_a_map_of_opacity_in_all_its_forms() -> None:
     for texture in (grey, colours, alpha):
         scene = plates(holed(-2, opacity_texture=texture)).with_environment(SKY)
         pictures.append(scenes.radiance(scene, scenes.pinhole(), spp=16)[..., 0])
-        # Of 16 samples with the same decision in each of 16 rows: five standard errors of what is decided by chance.
+        # A column has 16 samples in each of 16 rows of the same opacity: five standard errors of a random choice.
         columns = pictures[-1].mean(axis=0) / SKY
         np.testing.assert_allclose(columns, expected.mean(axis=0), atol=5 * 0.5 / math.sqrt(16 * 16))
         assert columns.mean() == pytest.approx(expected.mean(), abs=5 * 0.5 / math.sqrt(16 * expected.size))
@@ -95,7 +96,7 @@ def test_a_cutoff_makes_edges_sharp() -> None:
 
 
 def test_a_lamp_with_holes_gives_the_light_of_what_is_there() -> None:
-    """With light samples (bounces 0) and with scattered rays that meet it: the same mean."""
+    """Light samples (bounces 0) and scattered rays that hit the lamp give the same mean."""
     floor = (scenes.quad((0, 0, -2), 3)[0], rc.Material(diffuse=(0.5, 0.5, 0.5)))
     lamp, _ = scenes.quad((0, 0, 1), 2, right=(-1, 0, 0))
     camera = scenes.pinhole()
@@ -126,7 +127,7 @@ def test_emission_on_both_sides() -> None:
     glowing = rc.Material(diffuse=(0, 0, 0), emission=(7, 7, 7), double_sided=True)
     for corners in (front, back):
         np.testing.assert_allclose(scenes.radiance(plates((corners, glowing)), scenes.pinhole()), 7, rtol=1e-6)
-    # And it lights both sides alike: floors above and below a lamp.
+    # The lamp also lights both sides alike: floors above and below it.
     lamp = scenes.quad((0, 0, -2), 0.5, right=(1, 0, 0), up=(0, 0, -1))[0]
     floor = (scenes.quad((0, -1, -2), 3, right=(1, 0, 0), up=(0, 0, -1))[0], rc.Material())
     ceiling = (scenes.quad((0, 1, -2), 3, right=(1, 0, 0), up=(0, 0, 1))[0], rc.Material())
@@ -158,7 +159,7 @@ def test_a_shadow_catcher_shows_shadows_alone() -> None:
 
 
 def test_a_shadow_catcher_takes_the_share_of_each_light() -> None:
-    """Two lamps of 3 to 1, of which a plate hides the stronger one: a quarter of what is behind stays."""
+    """Two lamps of ratio 3 to 1; a plate hides the stronger one, so that a quarter of the light behind remains."""
     camera = scenes.pinhole()
     catcher = (scenes.quad((0, 0, -2), 3)[0], rc.Material(shadow_catcher=True))
     far = 60.0  # from where both fall alike on all of the catcher
@@ -201,7 +202,7 @@ def test_a_spot_fades_as_the_extension_says(inner: float, outer: float) -> None:
     fading = np.clip(way @ axis / distance * scale - cos_outer * scale, 0, 1) ** 2
     expected = 0.5 / math.pi * 100 * scenes.mean_over_pixels(rays, fading * -way[:, 2] / distance**3)
     measured = scenes.radiance(scene, camera)[..., 0]
-    # Where the spot fades within a thousandth of the cosine, roundings of the cosine are a part of that in 1e4.
+    # For a spot that fades within a thousandth of the cosine, the cosine's rounding is 1e-4 of that range.
     np.testing.assert_allclose(measured, expected, rtol=2e-3 if inner == outer else 5e-5, atol=1e-4 * expected.max())
     assert expected.max() > 0
 

@@ -181,5 +181,5 @@ def test_a_missing_texture_is_a_warning_and_seen(tmp_path: Path) -> None:
     scene = rc.Scene.load(path)
     assert any("nowhere.png" in warning for warning in scene.warnings)
     measured = scenes.radiance(scene.with_environment(1.0), scenes.pinhole())
-    # Nothing grey: a stand-in that nobody takes for the real thing.
+    # The stand-in texture is colourful, so that nobody mistakes it for the real one.
     assert np.ptp(measured[8, 12]) > 0.3 or np.ptp(measured[..., 0]) > 0.3

@@ -124,8 +124,8 @@ def test_furnace(bounces: int) -> None:
     shell = scenes.sphere(2.0, 16, rc.Material(diffuse=(albedo,) * 3, emission=(1, 1, 1)), inward=True)
     expected = sum(albedo**n for n in range(bounces + 2))
     measured = scenes.radiance(shell, scenes.pinhole(), spp=64, max_bounces=bounces)
-    # In a ball each light sample brings exactly the mean; flat facets make it vary by a few percent, in the
-    # mean over 24576 paths by less than 0.1%. Shadow rays and light at the facets' seams take the rest.
+    # In a ball each light sample brings exactly the mean. Flat facets make it vary by a few percent, and the mean over
+    # 24576 paths by less than 0.1%. The remaining tolerance is for shadow rays and light at the facets' seams.
     assert measured.mean() == pytest.approx(expected, rel=0.003)
 
 

@@ -85,7 +85,7 @@ def squares_of_triangles() -> rc.Scene:
 
 
 def test_out_of_focus_a_texture_is_blurred_by_the_lens_alone() -> None:
-    """As squares are that are triangles: by the lens, and by no footprint of its width."""
+    """Squares made of triangles are blurred alike: by the lens, and not by a ray footprint of the lens's width."""
     taken = camera("thin")
     textured, made = (
         scenes.radiance(scene, taken, spp=1024)[50:, :, 0] for scene in (floor(SQUARES), squares_of_triangles())
@@ -96,7 +96,7 @@ def test_out_of_focus_a_texture_is_blurred_by_the_lens_alone() -> None:
 
 
 def test_a_stretched_instance_has_the_levels_of_its_triangles() -> None:
-    """What a footprint is in the frame of an object that is 40 times as long there."""
+    """The ray footprint is transformed to the frame of the instance's object, stretched by 40 along one axis."""
     card = scenes.quad((0, 0, 0), 1, diffuse=1.0)
     lying = np.array([[1, 0, 0, 0], [0, 0, 1, -1], [0, -1, 0, -6], [0, 0, 0, 1.0]])
     material = rc.Material.metallic_roughness(base_color=(1, 1, 1), roughness=0.9)
@@ -114,7 +114,7 @@ def test_a_stretched_instance_has_the_levels_of_its_triangles() -> None:
     taken = rc.Camera(rc.Lens.load("double-gauss-50mm").focused(5), film=rc.Film(36, 24, (60, 40)), model="pinhole")
     one = rc.render(behind.with_instance(floor_of(corners), place), taken, effects=(), spp=4, device="cpu").pixels
     other = rc.render(behind.with_instance(floor_of(placed)), taken, effects=(), spp=4, device="cpu").pixels
-    # The same samples; a level is chosen by chance, and next to none changes by a rounding.
+    # The samples are the same; the texture level is chosen at random, and rounding changes very few choices.
     differ = np.abs(one - other).max(axis=2) > 1e-3 * other.max()
     assert one.std() > 0.1 * one.mean()
     assert differ.mean() < 0.01

@@ -1,4 +1,4 @@
-"""Light transport by name, and a clamp that the picture's metadata tell."""
+"""Light transport by name, and a clamp that the picture's metadata state."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_whitted_leaves_out_what_diffuse_surfaces_send_each_other() -> None:
 def test_whitted_follows_mirrors_and_glass() -> None:
     mirror = corner(rc.Material(diffuse=(0, 0, 0), mirror=(1, 1, 1), fresnel=False))
     direct = picture(mirror, max_bounces=0)
-    # What the mirror shows is lit by the lamp alone: of the floor, as without the wall's light that a path would bring.
+    # The floor seen in the mirror is lit by the lamp alone, without the light from the wall that a path would add.
     whitted, paths = (picture(mirror, transport=name, max_bounces=1, spp=256) for name in ("whitted", "paths"))
     assert whitted.mean() > 1.2 * direct.mean()
     assert whitted.mean() < paths.mean() * 1.01

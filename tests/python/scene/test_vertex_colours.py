@@ -46,7 +46,7 @@ def test_alpha_lets_light_through() -> None:
     camera = scenes.pinhole()
     pixels = rc.render(scene, camera, effects=(), spp=400, max_bounces=0).pixels
     full = rc.render(behind, camera, effects=(), spp=4, max_bounces=0).pixels
-    # 24 x 16 pixels of 400 samples, of which 3 in 4 pass: half a percent of the mean is six standard deviations.
+    # 24 x 16 pixels of 400 samples, 3 in 4 pass: half a percent of the mean is six standard deviations.
     np.testing.assert_allclose(pixels.mean() / full.mean(), 0.75, rtol=0.005)
 
 

@@ -1,4 +1,4 @@
-"""What tests of the sensor share: films of given exposure, and what a photon is."""
+"""Helpers of the sensor tests: films of given exposure, and photon counts."""
 
 from __future__ import annotations
 
@@ -47,7 +47,8 @@ def film_of(
 
 
 def photons_per_um2(lux_s: float, wavelength_nm: float) -> float:
-    """Of one wavelength at which LUMINOSITY is known: the definitions of the candela and of the photon."""
+    """Photons per um^2 at a wavelength for which LUMINOSITY is known, from the definition of the candela and the
+    energy of a photon."""
     joules_per_m2 = lux_s / (LUMENS_PER_WATT * LUMINOSITY[round(wavelength_nm)])
     return joules_per_m2 * wavelength_nm * 1e-9 / (PLANCK * LIGHT) * 1e-12
 
@@ -65,7 +66,7 @@ def counter(**changes: object) -> rc.Sensor:
 
 
 def electron_film(mean: float, shape: tuple[int, int], **changes: object) -> rc.Image:
-    """What gives `mean` electrons in each pixel of `counter()`, at its own ISO, in light of 550 nm."""
+    """A film that gives `mean` electrons in each pixel of `counter()`, at its own ISO, in light of 550 nm."""
     lux_s = mean / photons_per_um2(1, 550)
     iso = counter(**changes).iso_range()[0]
     return film_of(np.full(shape, lux_s), pitch_um=1, iso=iso, illuminant="550")

@@ -73,7 +73,7 @@ def differences(linear: np.ndarray, reference: np.ndarray) -> np.ndarray:
 
 
 def scaled_to(linear: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """By one factor for the whole picture: developers have exposures of their own."""
+    """Scales the picture by a single factor to fit the reference, because developers choose their own exposure."""
     return linear * (reference * linear).sum() / (linear * linear).sum()
 
 
@@ -94,8 +94,8 @@ def test_the_developed_chart_looks_as_the_film_does(name: str, illuminant: str, 
     film, raw = exposed(name, illuminant)
     reference = patch_means(film.pixels) * 0.018 * raw.iso
     found = patch_means(raw.exposure(demosaic)) * 0.018 * raw.iso
-    # No fit: absolute lux seconds. Noise is left: black has some 500 electrons a pixel, of which the mean of 576 pixels
-    # knows each filter to 0.2%, and the matrix doubles that.
+    # The values are absolute lux seconds, without any fit. Noise remains: black has some 500 electrons a pixel, so that
+    # the mean of 576 pixels is known to 0.2% for each filter, and the matrix doubles that.
     assert differences(found, reference).max() < 1.0
     assert np.median(differences(found, reference)) < 0.15
 

@@ -26,16 +26,16 @@ SERIES: dict[str, Callable[[], tuple[rc.Sensor, float]]] = {
 
 
 def saturation_e(sensor: rc.Sensor, gain_dn_per_e: float) -> float:
-    """Where the temporal variance is largest: the sheet's figure, or where the converter's end puts it.
+    """Electrons at the largest temporal variance: the sheet's figure, or the value set by the converter's end.
 
-    Found by brute force: the variance of numbers that are cut at the converter's end, of electrons around the means of
-    pixels whose response differs, with the read noise beside them.
+    Found by brute force: the variance of values clipped at the converter's end, for electron counts around the means of
+    pixels of different response, plus the read noise.
     """
     converter_e = (2**sensor.adc_bits - 1 - sensor.black_level_dn) / gain_dn_per_e
     if converter_e > sensor.full_well_e:
         return sensor.saturation_capacity_e
-    # Five times as many numbers change the variances by 2e-5; steps of 0.1% place the largest one ten times closer than
-    # the test asks for.
+    # Five times as many values change the variances by 2e-5; steps of 0.1% locate the maximum ten times more closely
+    # than the test requires.
     normal = np.linspace(-6, 6, 121)
     weights = np.exp(-0.5 * normal**2)
     weights /= weights.sum()
@@ -93,12 +93,12 @@ def test_a_photon_transfer_series_gives_the_parameters_back(name: str, monkeypat
     found = Results1288(data.data, pixel_area=area, loglevel=logging.ERROR)
     # 196 608 pixels in pairs know a variance to 0.32%, and the slope through some thirty of them to 0.1%.
     assert pytest.approx(gain, rel=WITHIN) == found.K
-    # Of the same pairs, minus the twelfth of quantisation: 0.2%. The dark current of 10 ms adds less.
+    # The same pairs, minus the twelfth of quantisation, give this to 0.2%. The dark current of 10 ms adds less.
     assert found.sigma_d == pytest.approx(sensor.read_noise_e, rel=WITHIN)
-    # The largest of variances that are known to 0.32%, of a curve that is flat there: some 0.5%. The sheet's 9458
-    # electrons of the imx900 cannot all be told: its converter ends at 9662, and pixels differ.
+    # The maximum of variances known to 0.32%, on a curve that is flat there: some 0.5%. The sheet's 9458 electrons of
+    # the imx900 cannot all be measured: its converter ends at 9662, and pixels differ.
     assert found.u_e_sat == pytest.approx(saturation, rel=WITHIN)
-    # Deviations over 196 608 pixels: 0.16%, and temporal noise of 16 frames beside them.
+    # Standard deviations over 196 608 pixels are known to 0.16%; the temporal noise of 16 frames adds to them.
     assert pytest.approx(sensor.dsnu_e, rel=WITHIN) == found.DSNU1288
     assert pytest.approx(sensor.prnu_percent, rel=WITHIN) == found.PRNU1288
     assert pytest.approx(100 * efficiency, rel=WITHIN) == found.QE

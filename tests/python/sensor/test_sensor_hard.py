@@ -17,7 +17,7 @@ each_sensor = pytest.mark.parametrize("name", NAMES)
 
 
 def of(name: str) -> tuple[rc.Sensor, float, float]:
-    """A sensor, its pitch in um, and the lowest ISO (100 where there is none)."""
+    """A sensor, its pitch in um, and its lowest ISO (100 if it states no ISO)."""
     sensor = rc.Sensor.load(name)
     return sensor, sensor.pixel_pitch_um or 5.0, sensor.iso_range()[0] or 100.0
 
@@ -137,7 +137,7 @@ def test_saturation_by_iso_12232() -> None:
 def test_pixels_of_another_size_are_told() -> None:
     sensor = rc.Sensor.load("sony-imx071-color")
     iso = sensor.iso_range()[0]
-    # Of 4944 x 3284 pixels of 4.78 um: what to ask for, in Python and at the command line alike.
+    # The message states the film to use, 4944 x 3284 pixels of 4.78 um, alike in Python and at the command line.
     told = r"pixels of 37.5 um are exposed as the sensor's of 4.78 um.*23.63 x 15.7 mm of 4944 x 3284 pixels"
     with pytest.warns(UserWarning, match=told):
         sensor.expose(film_of(np.ones((4, 4)), pitch_um=37.5, iso=iso))

@@ -37,7 +37,7 @@ def free_port() -> int:
 
 
 def until(get: Callable[[], T], is_right: Callable[[T], object], what: str, seconds: float = WAIT_S) -> T:
-    """What `get` gives as soon as it is right."""
+    """Polls `get` until `is_right` accepts its value, and returns that value."""
     begun = time.monotonic()
     while True:
         value = get()
@@ -68,7 +68,7 @@ _SETTINGS = {"noise_codes": 4.0, "most_windows": 4}
 
 
 def _cpu_s(stat: Path) -> float:
-    """Of a process or a thread, by its file in /proc. Raises FileNotFoundError where it has ended."""
+    """Processor time of a process or thread, from its file in /proc. Raises FileNotFoundError if it has ended."""
     fields = stat.read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
@@ -94,7 +94,7 @@ class Server:
         command = [sys.executable, "-c", _PROGRAM, "view", self.shot.name, "--no-browser", "--port", str(self.port)]
         # NiceGUI has a mode for tests that are run within it, which this variable turns on.
         environment = {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"}
-        # Appended to, so that a server that is started anew hides no traceback of the first.
+        # Opened for appending, so that a restarted server does not erase a traceback of the first one.
         with self.log.open("a") as log:
             self.process = subprocess.Popen(
                 [*command, *self.options],
@@ -117,12 +117,12 @@ class Server:
         return True
 
     def kill(self) -> None:
-        """As a crash would."""
+        """Ends the server as a crash would."""
         self.process.kill()
         self.process.wait()
 
     def stop(self, seconds: float = 60.0) -> None:
-        """As Ctrl-C does."""
+        """Ends the server as Ctrl-C does."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGINT)
             try:
@@ -171,8 +171,8 @@ async () => {
     return (await fetch(`/tests/asked/${key}`)).json();
 }
 """
-# The same after the last frame has been acknowledged; null before. The server answers a slow acknowledgement with the
-# same picture as a better JPEG, which has a serial of its own.
+# The serials after the last frame has been acknowledged; null before. The server answers a slow acknowledgement with
+# the same picture as a better JPEG, which has a serial of its own.
 _ASKED_IN_THE_END = """
 async () => {
     const key = [...realcamStreams.keys()][0].split("/").pop();
@@ -257,7 +257,7 @@ class BenchPage:
             self.complaints.append(message.text)
 
     def open_anew(self, url: str) -> None:
-        """As a user does who has never been there, but with scripts that are compiled: it is done in half the time."""
+        """Opens the page as for a new user, but with compiled scripts, which takes half the time."""
         path = self.page.evaluate("[...(window.realcamStreams?.keys() ?? [])][0]")
         self.page.goto(f"{url}realcam/page.css")  # of the page's origin, and without scripts
         if path:
@@ -306,7 +306,7 @@ class BenchPage:
     def check(self) -> None:
         assert self.complaints == [], self.complaints
 
-    # What is seen.
+    # Reading the state of the page.
 
     def revealed(self, found: Any) -> Any:
         """A locator, after the tab of its panel was clicked if that is not the one that is shown."""
@@ -340,7 +340,7 @@ class BenchPage:
         return np.frombuffer(base64.b64decode(content), np.uint8).reshape(height, width, 4)[..., :3]
 
     def shown(self) -> np.ndarray:
-        """What the canvas shows now, perhaps of a picture that is not done: (H, W, 3) codes."""
+        """Pixels that the canvas shows now, possibly of an unfinished picture: (H, W, 3) codes."""
         width, height, content = self.page.evaluate(_SHOWN, {})
         return np.frombuffer(base64.b64decode(content), np.uint8).reshape(height, width, 4)[..., :3]
 
@@ -355,7 +355,7 @@ class BenchPage:
     def until_text(self, name: str, is_right: Callable[[str], object]) -> str:
         return until(lambda: self.text(name), is_right, name)
 
-    # What is done.
+    # Acting on the page.
 
     @property
     def canvas(self) -> Any:
@@ -366,12 +366,12 @@ class BenchPage:
         self.canvas.click(position={"x": u * box["width"], "y": v * box["height"]})
 
     def hover(self, u: float, v: float) -> None:
-        """Over a place of the picture, which is scrolled to where it is seen."""
+        """Moves the mouse over a point of the picture, which is scrolled into view."""
         box = self.canvas.bounding_box()
         self.canvas.hover(position={"x": u * box["width"], "y": v * box["height"]})
 
     def turn(self, name: str, key: str, times: int = 1) -> None:
-        """A ring, by the keyboard."""
+        """Turns a ring by the keyboard."""
         for _ in range(times):
             self.test_id(name).press(key)
 

@@ -31,8 +31,8 @@ async def asked(key: str) -> dict[str, int]:
     """The serials of the pictures that a window has asked for last, by their slots."""
     window = _opened[0].get(key)
     assert window is not None
-    # What the page has sent before this came by other sockets. Each of the loop's turns takes it a step on its way to
-    # the thread of the window's actions: from the socket over a protocol's parser, its queue and a task or two.
+    # Earlier messages of the page came by other sockets. Each iteration of the event loop takes them a step towards the
+    # thread of the window's actions: from the socket through a protocol's parser, its queue and a task or two.
     for _ in range(50):
         await asyncio.sleep(0)
     while len(window.stream.inbox):
@@ -42,7 +42,7 @@ async def asked(key: str) -> dict[str, int]:
 
 @app.get("/tests/asked_in_the_end/{key}")
 async def asked_in_the_end(key: str) -> dict[str, int] | None:
-    """The same, when the page has acknowledged all frames; None before."""
+    """The requested serials as in `asked`, once the page has acknowledged all frames; None before."""
     window = _opened[0].get(key)
     assert window is not None
     if window.stream._sent or window.stream._frames:

@@ -54,7 +54,7 @@ def write_panels_shot(folder: Path, *, width: int = WIDTH, lens: str = "double-g
 
 
 def sharpness(codes: np.ndarray) -> tuple[float, float, float]:
-    """Of the near, the middle and the far panel: the standard deviation of the brightness within it, in codes.
+    """Sharpness of the near, the middle and the far panel: standard deviation of the brightness within it, in codes.
 
     Squares that are blurred to the width of two are all of one grey.
     """

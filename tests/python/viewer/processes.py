@@ -12,13 +12,13 @@ T = TypeVar("T")
 
 
 def run_apart(coroutine: Coroutine[Any, Any, T]) -> T:
-    """As asyncio.run, on a thread of its own: on that of the tests Playwright's loop counts as running."""
+    """asyncio.run on a new thread: on the thread of the tests, Playwright's loop counts as running."""
     with ThreadPoolExecutor(1) as thread:
         return thread.submit(asyncio.run, coroutine).result()
 
 
 def is_there(pid: int) -> bool:
-    """Whether a process runs: a zombie has ended."""
+    """True if the process runs; a zombie counts as ended."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except OSError:

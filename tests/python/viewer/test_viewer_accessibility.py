@@ -40,7 +40,7 @@ def use(bench: BenchPage, theme: str) -> None:
 
 @pytest.mark.parametrize("theme", THEMES)
 def test_the_page_follows_the_rules(bench: BenchPage, theme: str) -> None:
-    """As it is on a telephone, on a desktop where it tells of a problem, and with the gallery."""
+    """Checks the page at telephone size, on a desktop while it reports a problem, and with the gallery open."""
     bench.page.set_viewport_size({"width": 390, "height": 800})
     use(bench, theme)
     check(bench)
@@ -48,7 +48,7 @@ def test_the_page_follows_the_rules(bench: BenchPage, theme: str) -> None:
     bench.edit(1, "radius_mm", "1")
     bench.test_id("problem").wait_for()
     check(bench)
-    # What the lenses look like does not matter, and to draw all of them takes the server some seconds.
+    # Blank pictures replace the drawings of lenses: their content does not matter, and drawing all takes some seconds.
     blank = {"body": '<svg xmlns="http://www.w3.org/2000/svg"/>', "content_type": "image/svg+xml"}
     bench.page.route("**/realcam-lenses/*", lambda route: route.fulfill(**blank))
     bench.button("Gallery").click()

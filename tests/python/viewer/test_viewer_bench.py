@@ -32,7 +32,7 @@ BenchOf = Callable[..., LensBench]
 
 
 class Told:
-    """What a page would be told."""
+    """Records the notifications that a page would receive."""
 
     def __init__(self, bench: LensBench) -> None:
         self.bench = bench
@@ -135,7 +135,7 @@ def test_the_zoom_ring_is_undone_by_drags(bench: LensBench) -> None:
 
 
 def test_the_drawing_and_the_sharp_range_are_of_the_film_that_is_chosen(bench: LensBench) -> None:
-    """Not of the lens's own: half of a diagonal of 15 mm reaches 7.5 mm from the axis, and of one of 90 mm, 45 mm."""
+    """They ignore the lens's own film: half of a 15 mm diagonal reaches 7.5 mm from the axis, of 90 mm 45 mm."""
     told, sharp = Told(bench), []
     bench.listeners.sharp_range = lambda found: told.take(sharp, found)
     bench.turn("aperture", 9)
@@ -226,7 +226,7 @@ def test_what_is_impossible_leaves_all_as_it_was(bench: LensBench) -> None:
 
 
 def test_an_undo_that_cannot_be_leaves_the_history(bench: LensBench) -> None:
-    """A lens that was possible may be none with the camera as it has been set since."""
+    """A lens that was valid before may be invalid with the camera's present settings."""
     first = bench.controls.lens
     assert bench.edit(lambda lens: lens_edits.with_value(lens, 0, "thickness_mm", 3.9))
     edited = bench.controls.lens
@@ -275,7 +275,7 @@ def test_another_lens_brings_its_film_and_keeps_the_rings(bench: LensBench) -> N
 
 
 def test_an_edited_lens_comes_back_after_another(bench: LensBench) -> None:
-    """With its film, and of the pixels that are wanted now."""
+    """Undo restores the edited lens with its film, at the present resolution."""
     assert bench.edit_value(0, "radius_mm", 41.0)
     edited, film = bench.controls.lens, bench.controls.film
     assert bench.set_lens(rc.Lens.load("phone-4mm"))
@@ -387,7 +387,7 @@ def test_a_saved_shot_is_the_same_camera(
     again = saved_again(bench, shot_path, other / "saved.toml")
     assert_same_camera(again.camera, bench.controls.camera)
     assert list(again.effects) == bench.switches.as_specs()
-    # And once more, from what was saved: nothing drifts, and no lens is written anew.
+    # Saving once more from the saved shot: values do not drift, and no lens is written again.
     twice = saved_again(bench_of(again), other / "saved.toml", other / "twice.toml")
     assert_same_camera(twice.camera, again.camera)
 
@@ -407,7 +407,7 @@ def test_a_shot_is_saved_over_itself(bench: LensBench, shot_path: Path) -> None:
     ],
 )
 def test_what_a_shot_says_of_its_lens_is_kept(bench_of: BenchOf, tmp_path: Path, lens: str, more: str) -> None:
-    """A bundled lens is saved by its name; one with another diaphragm is written beside the shot."""
+    """A bundled lens is saved by its name; a lens with another diaphragm is written to a file next to the shot."""
     path = bench_shots.write_panels_shot(tmp_path, lens=lens, more=more)
     shot = rc.Shot.load(path)
     again = saved_again(bench_of(shot), path, tmp_path / "saved.toml")
@@ -472,7 +472,7 @@ def test_pictures_of_all_kinds(bench: LensBench, tmp_path: Path) -> None:
 
 
 def test_the_shot_file_s_ways_of_taking_pictures_are_kept(bench_of: BenchOf, tmp_path: Path) -> None:
-    """Shown, told in the picture's metadata, and saved."""
+    """They are shown, stated in the picture's metadata, and saved."""
     more = 'transport = "whitted"\nclamp_cd_m2 = 40.0\nilluminant = "A"\nmax_bounces = 2\n'
     path = bench_shots.write_panels_shot(tmp_path, more=more)
     path.write_text(path.read_text().replace("effects = []", 'effects = ["dispersion"]'))
@@ -492,12 +492,12 @@ def test_the_shot_file_s_ways_of_taking_pictures_are_kept(bench_of: BenchOf, tmp
     told_of, expected = image.metadata(), rendered.metadata()
     assert told_of.keys() == expected.keys()
     assert {entry for entry in expected if told_of[entry] != expected[entry]} <= {"realcam:spp"}
-    # Of 9600 pixels, each with a noise of 5%.
+    # The mean of 9600 pixels, each with a noise of 5%.
     np.testing.assert_allclose(image.pixels.mean(axis=(0, 1)), rendered.pixels.mean(axis=(0, 1)), rtol=5e-3)
 
 
 def test_clamped_light_is_seen(bench_of: BenchOf, tmp_path: Path) -> None:
-    """What bounces bring is cut off at the clamp, as rc.render cuts it."""
+    """Light from bounces is cut off at the clamp, as rc.render cuts it."""
     path = bench_shots.write_panels_shot(tmp_path, more="clamp_cd_m2 = 1.0\nmax_bounces = 3\n")
     shot = rc.Shot.load(path)
     bench = bench_of(shot, noise_codes=2.0)
@@ -510,7 +510,7 @@ def test_clamped_light_is_seen(bench_of: BenchOf, tmp_path: Path) -> None:
 
 
 def test_a_thickness_is_typed_as_it_is_shown(bench: LensBench) -> None:
-    """Where a focusing group has moved it, the lens grows by as much as was typed, and the group focuses again."""
+    """If focusing has changed the thickness, the lens grows by the typed difference, and the group focuses again."""
     bench.set_lens(rc.Lens.load("telephoto-200mm-inner-focus"))
     bench.change(focus_m=2.5)
     group = [k for k in range(len(bench.controls.body.surfaces)) if abs(bench.controls.focusing_shift_mm(k)) > 1]
@@ -533,7 +533,7 @@ def test_another_copy_is_one_of_the_lens_and_is_undone(bench: LensBench) -> None
     assert bench.undo() and bench.controls.lens == first
     assert bench.another_copy("precision")
     third = bench.controls.lens  # what undo has brought back is a copy, too, and no drawing
-    # All are of the lens as it was drawn: errors do not add up, but for the limit of 0.1% of each radius.
+    # All copies derive from the lens as designed: errors do not add up beyond the limit of 0.1% of each radius.
     for copy in (first, second, third):
         for surface, before in zip(copy.surfaces, drawn.surfaces, strict=True):
             assert surface.curvature_per_mm == pytest.approx(before.curvature_per_mm, rel=1.01e-3, abs=1e-4)

@@ -98,7 +98,7 @@ def noise_of(status: str) -> float:
 
 
 def test_resolution_and_noise(bench: BenchPage) -> None:
-    # With a seventh of the pixels one frame may take more samples than 4 grey levels ask for, and go past 2.
+    # With a seventh of the pixels, a frame may take more samples than 4 grey levels require, and so go below 2.
     bench.choose("resolution", "320 pixels across")
     assert bench.picture().shape == (213, 320, 3)
     assert bench.status.startswith("320 × 213")
@@ -221,7 +221,7 @@ async ({noise, told, contrast}) => {
 
 
 def test_peaking_marks_edges_and_no_noise(bench: BenchPage) -> None:
-    """Of normal noise, four deviations are exceeded by 6e-5 of the pixels, and that of neighbours by fewer."""
+    """Normal noise exceeds four deviations in 6e-5 of the pixels, and together with neighbours in fewer."""
     for noise, told, contrast in (
         (20, [[20]], 0),
         (20, None, 130),
@@ -500,7 +500,7 @@ def test_switching_an_effect_off_removes_it(bench: BenchPage) -> None:
     bench.choose_lens("singlet-100mm")
 
     def colour(p: np.ndarray) -> float:
-        """Of means over 4 x 4 pixels: of noise of 4 codes in each channel these have 1.1."""
+        """Mean difference of red and blue over blocks of 4 x 4 pixels; noise of 4 codes in each channel gives 1.1."""
         inner = p[8:-8, 8:-8].astype(float)
         return float(np.abs((inner[..., 0] - inner[..., 2]).reshape(16, 4, 26, 4).mean(axis=(1, 3))).mean())
 
@@ -522,7 +522,7 @@ def test_rays_of_the_point_under_the_mouse(bench: BenchPage) -> None:
 
 
 def plot(bench: BenchPage) -> str:
-    """The plot that is shown; none while one is drawn."""
+    """SVG of the plot that is shown; empty while one is being drawn."""
     return "" if bench.test_id("plot-busy").is_visible() else str(bench.test_id("plot-svg").inner_html())
 
 
@@ -588,7 +588,7 @@ def test_saving(bench: BenchPage, server: Server) -> None:
         bench.choose_what_to_save("picture", name)
 
         def answer() -> str:
-            """Of another click, as of one who sees nothing happen on a busy machine: each is refused alike."""
+            """Message after another click, as by a user who sees no reaction; each is refused alike."""
             bench.test_id("save").click()
             return bench.text("said")
 
@@ -614,7 +614,7 @@ def test_the_button_asks_for_a_lens_file(bench: BenchPage, tmp_path: Path) -> No
 
 
 def test_one_file_is_opened_twice(bench: BenchPage, tmp_path: Path) -> None:
-    """As after an edit in another program: the second time with what it has then."""
+    """The file changes in between, as by an edit in another program: the second time its new content is read."""
     file = tmp_path / "mine.toml"
     for name in ("heliar-100mm", "tessar-50mm", "tessar-50mm"):
         rc.Lens.load(name).save(file)

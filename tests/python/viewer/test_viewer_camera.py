@@ -124,7 +124,7 @@ def test_a_film_that_is_shifted_is_drawn_as_the_smallest_that_holds_it() -> None
 
 
 def test_the_stop_is_set_before_the_lens_is_focused() -> None:
-    """Engraved f-numbers are those at infinity: a lens of which a group moves has another focal length when near."""
+    """Engraved f-numbers hold at infinity: a lens with a moving group has another focal length when focused near."""
     lens = rc.Lens.load("telephoto-200mm-inner-focus")
     made = controls(lens.name, f_number=4.0, focus_m=2.6).set_lens
     assert made.stop_semi_diameter_mm == lens.stopped_down(4.0).stop_semi_diameter_mm

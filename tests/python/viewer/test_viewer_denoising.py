@@ -49,7 +49,7 @@ def test_a_picture_that_is_not_wanted_any_more_is_given_up(spheres: rc.Scene) ->
 
 @wants_it
 def test_only_the_first_frame_of_a_change_is_noisy_where_denoising_is_slow(watched: Watched) -> None:
-    """With all pixels that it has; every later frame is denoised, and has no fewer pixels than the one before it."""
+    """The first one has all pixels; each later frame is denoised, with at least as many pixels as the previous one."""
     watched.loop._taker._denoiser._rates.extend([1.0] * 5)  # pixels a second
     big = camera(film=rc.Film(36, 24, (600, 400)))
     serial = watched.loop.submit(PictureRequest(big, noise_codes=0.01, denoises=True))
@@ -63,7 +63,7 @@ def test_only_the_first_frame_of_a_change_is_noisy_where_denoising_is_slow(watch
 
 @wants_it
 def test_other_settings_are_not_shown_with_fewer_pixels(watched: Watched) -> None:
-    """As when the planner has decided: the camera has not moved, and the picture stays as fine as it is."""
+    """This happens when the planner has decided: the camera has not moved, and the picture keeps its resolution."""
     big = camera(film=rc.Film(36, 24, (600, 400)))
     request = PictureRequest(big, noise_codes=0.01, denoises=True)
     watched.loop.submit(request)
@@ -85,7 +85,7 @@ def test_frames_are_denoised_until_the_noise_is_what_is_asked_for(watched: Watch
     assert before and all(frame.is_denoised and not frame.is_final for frame in before)
     for frame in before:
         assert codes_of(frame).shape == (frame.height, frame.width, 3)
-    # What the last frame shows, and what is saved then, has nothing of it.
+    # The last frame, and a picture that is saved then, are not denoised.
     raw = watched.loop.image().result(60)
     assert raw.denoiser == "" and not raw.layers
     difference = codes_of(last).astype(float) - raw.developed()
@@ -98,7 +98,7 @@ def test_frames_are_denoised_until_the_noise_is_what_is_asked_for(watched: Watch
 
 @wants_it
 def test_another_exposure_is_shown_at_once(watched: Watched) -> None:
-    """Of the denoised picture that is there, at its brightness."""
+    """The existing denoised picture is shown with the new brightness."""
     big = rc.Film(36, 24, (600, 400))
     request = PictureRequest(camera(film=big), tone="linear", noise_codes=0.01, denoises=True)
     watched.loop.submit(request)
@@ -155,7 +155,7 @@ def test_without_a_denoiser_the_bench_says_what_to_install(bench_of: BenchOf, tm
 @wants_it
 @pytest.mark.picture_files
 def test_a_picture_is_saved_as_it_is_seen(bench_of: BenchOf, tmp_path: Path) -> None:
-    """Denoised with its name in the file, or as it is; each within what JPEG leaves of the frame."""
+    """Denoised with the denoiser's name in the file, or without denoising; each within the JPEG error of the frame."""
     oiio = pytest.importorskip("OpenImageIO")
     shot = rc.Shot.load(bench_shots.write_panels_shot(tmp_path, width=600))
     bench, frames = bench_of(shot, noise_codes=0.01), []

@@ -53,7 +53,7 @@ def forgetful(tmp_path: Path) -> Iterator[Server]:
 
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_it_ends_at_once_and_nothing_is_left(browser: playwright.Browser, own: Server, end: signal.Signals) -> None:
-    """With a page that is open, while it plots, plans, measures and refines."""
+    """A page is open, and the server plots, plans, measures and refines for it."""
     bench = BenchPage(browser, own.url)
     try:
         until(lambda: workers(own), lambda found: len(found) == 2, "both processes")
@@ -63,7 +63,7 @@ def test_it_ends_at_once_and_nothing_is_left(browser: playwright.Browser, own: S
         time.sleep(0.5)
         left = workers(own)
         own.process.send_signal(end)
-        # It takes 0.3 s on a quiet machine; what was wrong took as long as what was under way.
+        # Ending takes 0.3 s on a quiet machine; the former fault made it wait for the work in progress.
         own.process.wait(6)
         until(lambda: [pid for pid in left if is_there(pid)], lambda pids: not pids, "processes are left", 6)
     finally:
@@ -81,7 +81,7 @@ def test_a_plotting_process_that_is_killed_comes_again(bench: BenchPage, server:
 
 
 def test_a_plot_that_is_not_done_keeps_nobody(browser: playwright.Browser, forgetful: Server) -> None:
-    """Of a window that is closed meanwhile."""
+    """The plot belongs to a window that is closed meanwhile."""
     bench, other = BenchPage(browser, forgetful.url), BenchPage(browser, forgetful.url)
     stopped: list[int] = []
     try:
@@ -100,7 +100,7 @@ def test_a_plot_that_is_not_done_keeps_nobody(browser: playwright.Browser, forge
             assert time.monotonic() - begun < 5
             return threads(forgetful)
 
-        # A window has ten, of which the one that waits for the plot stays.
+        # A window has ten threads; the one that waits for the plot remains.
         until(answered, lambda now: now < before - 5, "the window is closed")
         for _ in range(3):
             answered()

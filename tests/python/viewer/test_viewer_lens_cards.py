@@ -1,4 +1,4 @@
-"""What the gallery of the lens bench chooses lenses by."""
+"""Properties by which the gallery of the lens bench selects lenses."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ def test_glasses_as_the_table_has_them() -> None:
     assert glass_of("1.5168,64.2") == (1.5168, 64.2)
     name = rc.glass_names()[0]
     assert with_value(LENS, 0, "glass", name).surfaces[0].material.label == name
-    # What the table shows of a glass can be typed in again, as a lens file has it and as it was typed in.
+    # The glass label that the table shows can be typed in again: that of a lens file, and that of a typed glass.
     for surface in LENS.surfaces:
         if surface.type == "refracting" and surface.material.label:
             once = with_value(LENS, 0, "glass", surface.material.label)
@@ -127,7 +127,7 @@ def test_a_plate_is_a_plate(place: int) -> None:
 
 @pytest.mark.parametrize("name", CENTRED)
 def test_a_plate_has_room_before_every_surface_of_every_lens(name: str) -> None:
-    """And what lies behind it stays in its place. Only where two surfaces touch there is no room."""
+    """The surfaces behind the plate keep their positions. There is no room only if two surfaces touch."""
     lens = rc.Lens.load(name)
     for index in range(1, len(lens.surfaces) + 1):
         last = index == len(lens.surfaces)
@@ -162,7 +162,7 @@ def test_surfaces_are_swapped() -> None:
     assert swapped.surfaces[2:] == triplet.surfaces[2:]
 
 
-# What is taken back.
+# Undo and redo.
 
 
 def lenses(count: int) -> list[rc.Lens]:
@@ -213,7 +213,7 @@ def test_the_history_has_an_end() -> None:
 
 
 def test_what_the_zoom_ring_moves_is_not_edited() -> None:
-    """The lengths of its positions would take its place, and nobody would see what was typed."""
+    """The zoom positions' thicknesses would override the typed value, so that the edit would have no visible effect."""
     lens = rc.Lens.load("zoom-70-200mm")
     moved = [
         index

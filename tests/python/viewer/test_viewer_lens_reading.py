@@ -62,7 +62,7 @@ def test_a_reader_that_crashes_or_never_ends_is_told(monkeypatch: pytest.MonkeyP
         begun = time.monotonic()
         with pytest.raises(rc.InputError, match=f"mine.toml: reading the file .*{told}"):
             lens_from("mine.toml", b"")
-        # As is that of the state which a page brings back.
+        # Restoring the state that a page brings back fails in the same way.
         with pytest.raises(rc.InputError, match=told):
             restored(before, state_of(before, {}))
         assert time.monotonic() - begun < 60

@@ -1,4 +1,4 @@
-"""What a browser may send to the lens bench, and what it may not."""
+"""Valid and invalid messages of a browser to the lens bench."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def test_moves_that_wait_become_one() -> None:
     assert merged({"type": "orbit", "x": 0.1, "y": 0}, {"type": "pan", "x": 0.1, "y": 0}) is None
     newer = {"type": "hover", "u": 0.9, "v": 0.9}
     assert merged({"type": "hover", "u": 0.1, "v": 0.1}, newer) is newer
-    # Each click and each turn counts.
+    # Each click and each turn counts, so they are not merged.
     assert merged({"type": "focus", "u": 0, "v": 0}, {"type": "focus", "u": 1, "v": 1}) is None
     assert merged({"type": "turn", "ring": "iso", "steps": 1}, {"type": "turn", "ring": "iso", "steps": 1}) is None
     assert merged({"type": "undo"}, {"type": "undo"}) is None

@@ -45,7 +45,7 @@ def test_of_those_that_wait_the_newest_is_done(tasks: NewestTask) -> None:
 def test_a_task_that_fails_is_logged_and_the_next_is_done(
     tasks: NewestTask, caplog: pytest.LogCaptureFixture, error: Exception, logged: int
 ) -> None:
-    """Not one that Ctrl-C has stopped."""
+    """A task that was cancelled (Ctrl-C) is not logged."""
     failed, ended = threading.Event(), threading.Event()
 
     def fails() -> None:
@@ -76,5 +76,5 @@ def test_tasks_take_no_more_than_their_share_of_the_time() -> None:
         assert ended.wait(WAIT_S)
     finally:
         tasks.close()
-    # Each begins four times as long after the one before as that has taken, 0.05 s or more.
+    # Tasks start at intervals of at least four times the duration of a task, which is 0.05 s or more.
     assert all(after - before >= 0.2 for before, after in pairwise(times))

@@ -46,8 +46,8 @@ def test_a_picture_is_refined_to_the_noise_that_is_asked_for(watched: Watched) -
 
 
 def test_the_time_that_is_left_is_told_truly(watched: Watched) -> None:
-    """In the second half within a factor of two: the square of the noise is estimated to two fifths, and the load of a
-    machine varies."""
+    """In the second half, the reported time is right within a factor of two: the square of the noise is estimated to
+    two fifths, and the load of a machine varies."""
     told: list[tuple[float, float | None]] = []
     take = watched._take
     watched.loop._encoder._on_frame = lambda frame: (told.append((time.monotonic(), frame.left_s)), take(frame))
@@ -75,7 +75,7 @@ def test_a_goal_beyond_the_most_samples_is_told(watched: Watched) -> None:
 
 
 def test_the_noise_that_is_told_is_the_error(watched: Watched) -> None:
-    """Against a picture of so many samples that its own noise does not count."""
+    """The reference picture has enough samples that its own noise does not count."""
     small = camera(film=rc.Film(36, 24, (60, 40)))
     reference = rc.render(watched.scene, small, effects=(), spp=4096, seed=99, max_bounces=1, device="cpu")
     truth = rc._core.develop(reference.pixels, 100).astype(float)
@@ -103,7 +103,7 @@ def test_the_newest_request_wins(watched: Watched) -> None:
 
 
 def test_every_request_that_is_begun_gets_its_first_frame(watched: Watched) -> None:
-    """So that the picture moves while the mouse does, however often that tells of itself."""
+    """The picture follows the mouse, however often the mouse sends events."""
     count, deadline = 0, time.monotonic() + 60
     while len({frame.serial for frame in watched.frames}) < 20:
         assert time.monotonic() < deadline
@@ -146,7 +146,7 @@ def test_another_exposure_needs_no_new_samples(watched: Watched) -> None:
 
 
 def test_a_picture_that_is_asked_for_once_more_is_one_frame(watched: Watched) -> None:
-    """The last one as it was, so that nothing is told twice of it."""
+    """The last frame is sent again unchanged, so that nothing is reported twice."""
     request = PictureRequest(camera(), noise_codes=4.0)
     before = watched.photograph(request)
     watched.loop.jpeg_quality = 90
@@ -222,7 +222,7 @@ def test_what_a_pixel_shows(watched: Watched) -> None:
 
 
 def light_of(codes: np.ndarray) -> float:
-    """The mean of what sRGB encodes (IEC 61966-2-1), which noise leaves as it is; that of the codes it makes less."""
+    """Mean linear light of sRGB codes (IEC 61966-2-1). Noise does not change it, but lowers the mean of the codes."""
     encoded = codes / 255
     return float(np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4).mean())
 
@@ -252,7 +252,7 @@ def test_a_slow_frame_has_the_exposure_set_meanwhile(watched: Watched, monkeypat
 
 
 def test_who_asks_means_the_picture_that_was_wanted_last(watched: Watched) -> None:
-    """Not the one that is still shown: a click may come right after a move."""
+    """A query refers to the latest request, not to the picture still shown: a click may come right after a move."""
     watched.photograph(PictureRequest(camera(), noise_codes=8.0))
     for z in (6.0, 3.0, 9.0):
         watched.loop.submit(PictureRequest(camera().replace(position=(0, 1, z)), noise_codes=8.0))
@@ -263,7 +263,7 @@ def test_who_asks_means_the_picture_that_was_wanted_last(watched: Watched) -> No
 
 
 def test_the_light_of_a_point_does_not_depend_on_the_exposure(watched: Watched) -> None:
-    """It is metered in the samples that are there, which another exposure time has collected."""
+    """Metering uses the existing samples, which were collected with another exposure time."""
     request = PictureRequest(camera(), noise_codes=4.0)
     watched.photograph(request)
     first = watched.loop.point(0.5, 0.7).result(10)
@@ -328,7 +328,7 @@ def codes_per_share() -> float:
 
 
 def test_the_noise_of_parts_is_where_it_is() -> None:
-    """Of a picture whose right half is noisy: each part tells that of the mean of all its samples."""
+    """The right half of the picture is noisy. Each part reports the noise of the mean of all its samples."""
     random = np.random.default_rng(3)
     deviation = np.zeros((160, 320, 1), np.float32)
     deviation[:, 160:] = 0.1 * GREY_LX
@@ -366,7 +366,7 @@ def test_noise_is_measured_between_doublings_too() -> None:
 def test_a_picture_ends_with_about_the_samples_that_its_noise_takes(
     watched: Watched, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Which are seldom those of a doubling. 1.2 times less noise takes 1.44 times the samples, and estimates err."""
+    """The number is seldom a power of two. 1.2 times less noise takes 1.44 times the samples, and estimates err."""
     monkeypatch.setattr(Pace, "refining_spp", lambda *_: 1)
     first = watched.photograph(PictureRequest(camera(), noise_codes=2.0))
     assert first.noise_codes is not None

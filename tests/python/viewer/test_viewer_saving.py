@@ -1,4 +1,4 @@
-"""What the page saves, and what it leaves alone."""
+"""Files that the page saves, and files that it must not change."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def error_of(path: Path, reference: rc.Image) -> float:
 
 
 def test_a_picture_is_saved_with_the_noise_that_is_asked_for(bench: BenchPage, server: Server, folder: Path) -> None:
-    """By its own button, though that is clicked as soon as the page is there, when the picture has one sample."""
+    """It has a button of its own, here clicked as soon as the page is open, when the picture has one sample."""
     shot = rc.Shot.load(server.shot)
     bench.choose("refine to", "2 grey levels")
     bench.until_text("save-refined", lambda text: text == "Save to 2 grey levels")
@@ -121,13 +121,13 @@ def test_a_picture_is_saved_with_the_noise_that_is_asked_for(bench: BenchPage, s
     until(lambda: bench.text("said"), lambda text: text == "Wrote refined.png", "saved", 240)
     bench.until_text("time-left", lambda text: text == "Time left: none")
     reference = rc.render(shot.scene, shot.camera, effects=(), spp=512, seed=9, device="cpu")
-    # The noise that is told is that of the error or more, to a fifth (test_viewer_picture_loop.py); 0.4 is that of the
-    # rounding of both, and 1.6 that of the reference. One sample has 36, and the picture that was not asked for 3.3.
+    # The reported noise is at least the error, within a fifth (test_viewer_picture_loop.py); the rounding of both
+    # pictures adds 0.4, and the reference 1.6. One sample has 36, and the picture without this button 3.3.
     assert error_of(folder / "refined.png", reference) < 2.9
 
 
 def test_a_picture_is_saved_as_it_is_seen_now(bench: BenchPage, folder: Path) -> None:
-    """With all its pixels, denoised or not, and without waiting for the noise that is asked for."""
+    """It has all pixels of the shown picture, denoised or not, and is saved without waiting for the noise goal."""
     oiio = pytest.importorskip("OpenImageIO")
     bench.choose("resolution", "960 pixels across")
     bench.choose("refine to", "half a grey level (fine)")

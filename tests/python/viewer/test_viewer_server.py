@@ -34,9 +34,9 @@ def own(tmp_path: Path) -> Iterator[Server]:
 
 @pytest.fixture
 def own_without_pools(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Server]:
-    """As `own`, but glibc gives back what is freed, so that its memory is what it uses.
+    """Like `own`, but glibc returns freed memory, so that the process's memory is the memory in use.
 
-    Otherwise tables of 12 MB leave holes in the heaps of its threads, which grow by up to 65 MB, as it happens.
+    Otherwise tables of 12 MB leave holes in the heaps of the server's threads, which may grow by up to 65 MB.
     """
     monkeypatch.setenv("GLIBC_TUNABLES", "glibc.malloc.arena_max=1:glibc.malloc.mmap_threshold=262144")
     yield from served_panels(tmp_path, width=240)
@@ -136,7 +136,7 @@ def test_what_is_no_http(server: Server) -> None:
 
 
 def test_requests_that_are_left_are_no_errors(browser: playwright.Browser, server: Server) -> None:
-    """As of a page that is closed while it loads."""
+    """Requests are abandoned as by a page that is closed while it loads."""
     paths = ["", "realcam-lenses/fisheye-6mm-220deg.svg", "_nicegui_ws/socket.io/?EIO=4&transport=polling"]
     for k in range(12):
         with socket.create_connection(("127.0.0.1", server.port), 20) as line:
@@ -159,7 +159,7 @@ def test_other_sites_are_refused(server: Server, bench: BenchPage) -> None:
             fetch(request)
     with pytest.raises(InvalidStatus), stream(server, stream_path(bench), origin="http://elsewhere.example"):
         pass
-    # A window that is none.
+    # The stream of a window that does not exist.
     with pytest.raises(ConnectionClosed) as end, stream(server, "/realcam/stream/none") as line:
         line.recv(timeout=30)
     assert end.value.rcvd is not None
@@ -171,7 +171,7 @@ def test_uploads_are_bounded(server: Server, bench: BenchPage, tmp_path: Path) -
     files = bench.page.locator("[data-testid=upload] input[type=file]")
     files.set_input_files(tmp_path / "large.zmx")
     bench.page.get_by_text("of at most 2 MiB").wait_for()
-    # Nor does somebody get it in who does not ask the page.
+    # Clients that bypass the page cannot upload it either.
     body = b"x" * 20_000_000
     request = urllib.request.Request(f"{server.url}_nicegui/client/x/upload/1", data=body, method="POST")
     with pytest.raises((urllib.error.HTTPError, OSError)) as refused:
@@ -256,7 +256,7 @@ def test_a_server_that_dies_and_comes_again(browser: playwright.Browser, own: Se
 
 
 class SlowLink:
-    """A TCP proxy that lets through as many bytes a second as it is told, from the server to the browser, or none."""
+    """A TCP proxy that limits the bytes per second from the server to the browser, or stops them altogether."""
 
     def __init__(self, port: int) -> None:
         self.to_port, self.bytes_per_s = port, float("inf")
@@ -328,7 +328,7 @@ def test_a_slow_link_shows_the_newest_frame_and_recovers(browser: playwright.Bro
         until(seen, lambda f: any(frame["jpeg_quality"] < 80 for frame in f[len(frames) :]), "a coarser frame")
         link.bytes_per_s = float("inf")
         bench.send({"type": "orbit", "x": 0.05, "y": 0})
-        # At its best, although nothing is touched any more.
+        # The last frame comes at the best quality, although the user does nothing more.
         until(
             lambda: [(f["serial"], f["jpeg_quality"], f["is_final"]) for f in seen()[-3:]],
             lambda last: last[-1][1] == 90 and last[-1][2],
@@ -341,7 +341,7 @@ def test_a_slow_link_shows_the_newest_frame_and_recovers(browser: playwright.Bro
 
 def random_message(chance: random.Random) -> dict:
     kind = chance.choice(
-        # Of focus and meter few, because they wait for a picture, of lenses that take a second to be made ready.
+        # Focus and meter are rare, because they wait for a picture of a lens that takes a second to prepare.
         [*["orbit", "orbit", "pan", "dolly", "hover", "edit", "edit", "edit", "edit"] * 3, "focus", "meter"]
         if chance.random() < 0.6
         else ["insert", "remove", "swap", "undo", "redo", "turn", "turn", "switch"]
@@ -393,7 +393,7 @@ def test_hundreds_of_random_edits_and_moves(browser: playwright.Browser, own_wit
         for steps, engraved in ((100, "ISO 25600"), (-100, "ISO 50")):
             bench.send({"type": "turn", "ring": "iso", "steps": steps})
             until(lambda: bench.text("iso-text"), lambda text, iso=engraved: text == iso, "all is done", 240)
-        # What the user does now is done, and is seen.
+        # The user's next action is carried out and shown.
         bench.choose_lens("tessar-50mm")
 
         def seen() -> tuple[float, list[str]]:

@@ -1,4 +1,4 @@
-"""What a lens bench is opened with."""
+"""Files with which a lens bench is opened."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_a_scene_file_is_seen_as_render_sees_it(tmp_path: Path) -> None:
     said = {entry.name: entry.value for entry in oiio.ImageBuf(str(picture)).spec().extra_attribs}
     mine = rc.render(shot.scene, shot.camera, spp=1, effects=(), device="cpu").metadata()
     assert {name: said.get(name) for name in mine} == mine
-    # And is saved as a shot that shows the same.
+    # The scene is saved as a shot that shows the same picture.
     for file, content in saving.shot_contents(
         source, CameraControls.of(shot.camera), ["auto"], tmp_path / "saved.toml"
     ).items():

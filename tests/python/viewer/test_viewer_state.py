@@ -1,4 +1,4 @@
-"""What a page keeps of its bench, and brings back after the server was started anew."""
+"""The bench state that a page stores, and restores after a restart of the server."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def test_a_name_leads_to_no_other_folder() -> None:
 def test_effects_are_those_that_the_shot_names(words: list[str]) -> None:
     switches = Switches.from_shot(words)
     assert sorted(switches.as_specs()) == sorted(words)
-    # What moves and has no switch is left out by its name; a switch that is off is not named.
+    # "-name" excludes an effect without a switch and stays in the list; an effect whose switch is off is not listed.
     named = [word for word in words if word not in ("auto", "-dispersion")]
     assert sorted(switches.effects_to_simulate(None)) == sorted(named)
 

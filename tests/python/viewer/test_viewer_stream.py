@@ -147,7 +147,7 @@ def test_everything_is_read_while_something_takes_long() -> None:
 
 @pytest.mark.parametrize("seconds", [0.0, 0.2])
 def test_the_last_frame_of_a_picture_comes_at_its_best(seconds: float) -> None:
-    """Also where the link or the page is somewhat slow, which makes all others coarser."""
+    """This holds even if a slow link or page lowers the quality of all other frames."""
 
     async def test(slow: SlowBench, stream: PictureStream) -> None:
         slow.may.set()

@@ -1,4 +1,4 @@
-"""The table of the lens, while somebody types into it."""
+"""The table of the lens, while the user types into it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ HOLD_LENSES = """
 
 
 def test_what_was_entered_stays_until_the_server_has_answered(bench: BenchPage) -> None:
-    """And what is typed then replaces what is marked, although the answer draws the cell anew."""
+    """Text typed then replaces the selection, although the answer redraws the cell."""
     cell = bench.cell(0, "thickness_mm")
     bench.page.evaluate(HOLD_LENSES)
     cell.fill("4.20")

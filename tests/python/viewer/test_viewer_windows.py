@@ -91,7 +91,7 @@ def test_one_whose_page_has_gone_makes_room() -> None:
 
 
 def test_one_that_nobody_waits_for_any_more_is_closed() -> None:
-    """As of a page that is closed, or has no patience, while the scene is made ready."""
+    """The page is closed, or its request is cancelled, while the scene is being prepared."""
     benches = Benches(0.5)
 
     async def come() -> None:

@@ -68,7 +68,7 @@ def test_ctrl_c_is_not_for_it(worker: WorkerProcess) -> None:
 
 
 def test_one_that_is_ended_does_no_more(worker: WorkerProcess) -> None:
-    """Nor does it begin anew for whoever waited for it."""
+    """The worker is not restarted for callers that were waiting for it."""
     pid = worker.call(os.getpid, seconds=WAIT_S)
     told: list[str] = []
 

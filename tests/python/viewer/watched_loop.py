@@ -1,4 +1,4 @@
-"""The thread that photographs for a window of the lens bench, with what it has told."""
+"""The picture thread of a lens-bench window, with a record of its reports."""
 
 from __future__ import annotations
 

@@ -236,7 +236,7 @@ def test_mistakes_in_a_recipe_have_one_line(tmp_path: Path, text: str, message: 
 )
 @pytest.mark.parametrize("is_begun", [False, True])
 def test_files_of_other_programs_stay(tmp_path: Path, name: str, content: bytes | None, is_begun: bool) -> None:
-    """Also a file of another data set in a folder of this one."""
+    """This includes files of another data set in the folder."""
     file = tmp_path / name
     if is_begun:
         if name == "dataset.json":

@@ -51,12 +51,12 @@ def test_of_a_pinhole_that_moves_sideways_it_is_f_dx_over_z(device: str) -> None
 
 
 def test_of_a_pinhole_that_turns_it_is_a_homography() -> None:
-    """Of what lies at infinity: K R K^-1, with the axes of OpenCV."""
+    """For points at infinity, the homography is K R K^-1, with the axes of OpenCV."""
     first = scenes.pinhole(FILM)
     turn = np.radians(5)
     second = scenes.pinhole(FILM, look_at=(np.sin(turn), 0, -np.cos(turn)))
     flow = rc.optical_flow(scenes.sky(), first, second)
-    # What was ahead is to the left of the middle of a camera that turned to the right.
+    # A point straight ahead moves to the left of the picture's centre when the camera turns right.
     right_to_left = np.array([[np.cos(turn), 0, -np.sin(turn)], [0, 1, 0], [np.sin(turn), 0, np.cos(turn)]])
     matrix = first.camera_matrix @ right_to_left @ np.linalg.inv(first.camera_matrix)
     to = np.dstack([middles(), np.ones((40, 60))]) @ matrix.T
@@ -114,7 +114,7 @@ def test_a_card_hides_of_the_wall_what_lies_behind_it() -> None:
 
 
 def test_nothing_hides_a_floor_that_is_seen_at_a_grazing_angle() -> None:
-    """Its last pixels are half a metre deep, and land between pixels of which some show the sky."""
+    """Its last pixels are half a metre deep and land between pixels, some showing the sky."""
     floor = scenes.scene_of(scenes.quad((0, -0.3, -5), 50, 4.5, up=(0, 0, -1), diffuse=0.5)).with_environment(1.0)
     first = scenes.pinhole(FILM, up=(0.2, 1, 0))
     on_floor = rc.render(floor, first, spp=1, effects=(), layers=["object_id"]).layers["object_id"] == 1

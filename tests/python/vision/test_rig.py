@@ -36,7 +36,7 @@ def floor() -> rc.Scene:
 def test_a_stereo_pair_stands_beside_its_camera_and_has_the_pose_of_opencv() -> None:
     rig = rc.Rig.stereo(camera(), baseline_m=BASELINE_M)
     left, right = rig.cameras["left"], rig.cameras["right"]
-    # The middle between them is the camera's place, and both look as it does; to rounding of numbers about 3.
+    # The cameras are centred on the original camera and have its orientation, to the rounding of numbers of about 3.
     assert np.add(left.position, right.position) / 2 == pytest.approx((1, 2, 3), abs=1e-14)
     assert np.linalg.norm(np.subtract(right.position, left.position)) == pytest.approx(BASELINE_M, abs=1e-14)
     for each in (left, right):
@@ -175,7 +175,7 @@ def test_a_rig_of_colmap_has_poses_from_its_first_camera(tmp_path: Path) -> None
     front, side = json.loads((tmp_path / "rig_config.json").read_text())[0]["cameras"]
     assert front == {"image_prefix": "front/", "ref_sensor": True}
     w, x, y, z = side["cam_from_rig_rotation"]
-    # What is ahead of the front camera is to the right of the other one: 90 degrees about y, which points down.
+    # The direction ahead of the front camera is to the right of the side camera: 90 degrees about y, which points down.
     assert (w, x, y, z) == pytest.approx((np.sqrt(0.5), 0, np.sqrt(0.5), 0), abs=1e-12)
 
 
@@ -212,7 +212,7 @@ def test_frames_of_colmap_put_its_cameras_where_they_are(tmp_path: Path) -> None
         for side, by_rig in composed.items():
             true = expected[side].world_to_camera
             for found in (by_rig, pose(pictures[f"{side}/{name}"][1:8])):
-                # What 15 digits leave of numbers of a few metres.
+                # The error of 15 digits of numbers of a few metres.
                 assert found[0] == pytest.approx(true[0], abs=1e-13)
                 assert found[1] == pytest.approx(true[1], abs=1e-13)
 

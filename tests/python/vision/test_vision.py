@@ -116,7 +116,7 @@ def test_a_fit_says_what_the_lens_shows(lens: str, model: str, limit: float) -> 
     shown = camera.project(points)
     off = np.linalg.norm(fit.project(points) - shown, axis=1)
     assert off.max() < 1.2 * fit.max_px + 1e-3
-    # And back.
+    # unproject is the inverse of project.
     back = fit.unproject(shown)
     assert np.linalg.norm(back, axis=1) == pytest.approx(1)
     there = np.array(camera.entrance_pupil_position_m) + 7 * back
@@ -136,7 +136,7 @@ def test_a_rational_model_with_a_pole_beyond_the_film_covers_it(lens: str) -> No
 def test_more_coefficients_fit_no_worse() -> None:
     camera = camera_of("wide-22mm")
     rms = [rc.fit_camera_model(camera, name).rms_px for name in ("pinhole", "opencv4", "opencv5", "opencv8")]
-    # Where opencv5 is good enough, opencv8 is the same model, to the last digits of a search.
+    # If opencv5 fits well enough, opencv8 gives the same model, to the last digits of the search.
     assert (np.diff(rms) < 1e-9).all() and rms[-1] < 0.01 * rms[0]
 
 
@@ -252,7 +252,7 @@ def test_json_has_pose_and_intrinsics(tmp_path: Path) -> None:
 
 
 def quaternion_matrix(w: float, x: float, y: float, z: float) -> np.ndarray:
-    """As COLMAP's documentation has it (Hamilton)."""
+    """Rotation matrix of a quaternion in the convention of COLMAP's documentation (Hamilton)."""
     return np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
