@@ -140,7 +140,7 @@ def test_a_machine_that_computes_other_bits_is_refused(tmp_path: Path) -> None:
             "v2",
             "the job requires realcam .*x86-64-v2; this process has .*, whose samples would differ",
         ),
-        ("embree", "1.0", "the job wants realcam .*Embree 1.0"),
+        ("embree", "1.0", "the job requires realcam .*Embree 1.0"),
     ):
         changed = {**about, "engine": {**about["engine"], key: other}}
         (folder / "job.json").write_text(json.dumps(changed))
@@ -170,7 +170,7 @@ def test_what_was_deleted_or_damaged_is_done_again(tmp_path: Path, command: Comm
     assert status.damaged == (f"00000/{done[5].name}",)
     told = command("job", "status", folder)
     assert told.returncode == 0
-    assert f", 1 damaged (00000/{done[5].name}), which realcam job work does again" in told.stdout
+    assert f", 1 damaged (00000/{done[5].name}), which realcam job work will repeat" in told.stdout
     with pytest.raises(rc.InputError, match=r"2 of .* units are missing; run realcam job work to render them"):
         job.image()
     (folder / "rounds" / "00000" / "002.npz").write_bytes(b"nothing")
@@ -308,7 +308,7 @@ def test_pipes_devices_and_links_are_refused(tmp_path: Path, job_of_four: Path) 
         precious = outside / "precious.npz"
         precious.write_bytes(b"mine")
         (folder / name).symlink_to(outside)
-        with pytest.raises(rc.InputError, match="not a link"):
+        with pytest.raises(rc.InputError, match="found a link or a file"):
             rc.Job.load(folder).work()
         assert precious.read_bytes() == b"mine"
 

@@ -162,7 +162,7 @@ def test_apertures(tmp_path):
         one_form(tmp_path, "ELX 5; ELY 3; ARO 30")
     with pytest.raises(rc.LensFileError, match=r"surface 2.*several apertures"):
         one_form(tmp_path, "ELX 5; ELY 3; REX 4; REY 4")
-    with pytest.raises(rc.LensFileError, match=r"surface 2.*ADX has no aperture in front of it"):
+    with pytest.raises(rc.LensFileError, match=r"surface 2.*ADX has no preceding aperture"):
         code_v(tmp_path, STOP, "S 50 4 600.400\nADX 1", BACK)
 
 

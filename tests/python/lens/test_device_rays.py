@@ -45,7 +45,7 @@ from ..device_memory import (
         (ClaimedByDLPack(np.zeros((2, 3), np.float16)), "type float16; expected float64 or float32"),
         (ClaimedByDLPack(np.zeros((4, 3))[::2]), "contiguous copy"),
         (ClaimedByDLPack(np.zeros((3, 2)).T), "contiguous copy"),
-        (ClaimedByDLPack(capsule=7), "gives no capsule"),
+        (ClaimedByDLPack(capsule=7), "returned no capsule"),
         (Unexportable(), "cannot be read: it needs its gradient"),
     ],
 )
@@ -78,7 +78,7 @@ def test_rays_are_made_on_one_gpu() -> None:
         lambda: small_camera().generate_rays(device="cuda:0,1"),
         lambda: LENS.trace(*film_rays(), device="cuda:0,1"),
     ):
-        with pytest.raises(rc.InputError, match="one GPU"):
+        with pytest.raises(rc.InputError, match="a single GPU"):
             ask()
 
 

@@ -135,9 +135,9 @@ def test_several_surfaces_change_at_once() -> None:
 @pytest.mark.parametrize(
     ("edit", "message"),
     [
-        (lambda lens: lens.scaled(0), "positive, finite factor"),
-        (lambda lens: lens.scaled(math.nan), "positive, finite factor"),
-        (lambda lens: lens.inserted(99, plate()), "99 is neither"),
+        (lambda lens: lens.scaled(0), "positive and finite"),
+        (lambda lens: lens.scaled(math.nan), "positive and finite"),
+        (lambda lens: lens.inserted(99, plate()), "found 99"),
         (lambda lens: lens.inserted(11, plate()), "distance from it is required"),
         (lambda lens: lens.inserted(0, plate(), gap_mm=1), "a distance from the preceding surface is not possible"),
         (lambda lens: lens.inserted(3, []), "no surfaces to insert"),

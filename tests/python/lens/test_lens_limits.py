@@ -130,7 +130,7 @@ def test_focusing_stops_where_faces_would_cross() -> None:
         (lambda: rc.Glass.from_abbe_number(1.5, -60), "positive Abbe number"),
         (lambda: rc.Glass.from_abbe_number(0.5, 60), "at least 1"),
         (lambda: rc.Glass.from_abbe_number(math.inf, 60), "finite"),
-        (lambda: rc.Glass.sellmeier([], []), "equally many"),
+        (lambda: rc.Glass.sellmeier([], []), "the same number of coefficients"),
         (lambda: rc.Glass.sellmeier([1.0], [math.inf]), "finite"),
         (lambda: rc.Glass.table([]), "at least one"),
         (lambda: rc.Glass.table([(500, 1.5), (500, 1.6)]), "twice"),

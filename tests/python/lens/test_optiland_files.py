@@ -72,7 +72,7 @@ def test_apertures(tmp_path):
     without = aperture(type="DifferenceAperture", a=disc, b=box)
     assert without.obscurations[0]["rectangle_mm"] == (4, 2)
     assert aperture(type="PolygonAperture", x=[0, 5, 0], y=[0, 0, 5]).aperture["polygon_mm"][1] == (5, 0)
-    with pytest.raises(rc.LensFileError, match=r"surface 2.*no circle \(UnionAperture\)"):
+    with pytest.raises(rc.LensFileError, match=r"surface 2.*not a circle \(UnionAperture\)"):
         aperture(type="UnionAperture", a=disc, b=box)
 
 
