@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import InputError
 
-Array = NDArray[np.float64]
+# Arrays of doubles, as numpy's functions return them.
+Array = NDArray[Any]
 Integers = NDArray[np.intp]
 Booleans = NDArray[np.bool_]
 

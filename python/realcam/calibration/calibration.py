@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,35 +12,22 @@ from numpy.typing import ArrayLike
 from .._core import InputError
 from . import opencv_models, rectification, resampling
 from .arrays import Array, Integers, picture_size, rows_of
-from .model import CameraModel, shift
+from .load import load
+from .model import shift
+from .stated_camera import StatedCamera
 from .status import PointStatus
 
 ORIGIN = 0.5  # of realcam: coordinate of the centre of the first pixel
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Calibration:
+class Calibration(StatedCamera):
     """A calibrated camera: a central model that maps directions to pixels and back.
 
     Pixels are realcam's: the centre of the first pixel is (0.5, 0.5), and rows increase downwards. Camera axes are
     x right, y down, z forward.
-    camera_model: the equations. size: (width, height) in pixels. model: name of the model in its file format. name:
-    of the camera in its file. format: of the file; empty for a camera that was not loaded. pixel_origin: coordinate of
-    the centre of the first pixel in the file's own convention. extrinsics: (4, 4) rigid transforms, metres, under
-    names such as "camera_from_imu". file_values: parameters as the file states them.
+    Attributes: those of StatedCamera.
     """
-
-    camera_model: CameraModel
-    size: tuple[int, int]
-    model: str
-    name: str = ""
-    format: str = ""
-    pixel_origin: float = ORIGIN
-    extrinsics: Mapping[str, Array] = field(default_factory=dict)
-    file_values: Mapping[str, Any] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "size", picture_size(self.size))
 
     @staticmethod
     def load(
@@ -58,9 +44,8 @@ class Calibration:
         then from the suffix. size: (width, height) in pixels, for formats that do not state it. crop_factor: of the
         camera, for lensfun. Raises CalibrationFileError, InputError.
         """
-        from .load import load  # the readers need this class
-
-        return load(path, camera, format, size=size, crop_factor=crop_factor)
+        stated = load(path, camera, format, size=size, crop_factor=crop_factor)
+        return Calibration(**{entry.name: getattr(stated, entry.name) for entry in fields(stated)})
 
     @staticmethod
     def opencv(K: ArrayLike, D: ArrayLike, size: tuple[int, int]) -> Calibration:

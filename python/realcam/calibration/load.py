@@ -6,11 +6,11 @@ import os
 
 from .._core import InputError
 from .arrays import picture_size
-from .calibration import Calibration
 from .document import Document
 from .errors import CalibrationFileError
 from .formats import FORMATS
 from .formats.format import Format, Options
+from .stated_camera import StatedCamera
 
 
 def load(
@@ -20,7 +20,7 @@ def load(
     *,
     size: tuple[int, int] | None = None,
     crop_factor: float | None = None,
-) -> Calibration:
+) -> StatedCamera:
     """See Calibration.load."""
     options = Options(None if size is None else picture_size(size), crop_factor)
     document = Document(path)

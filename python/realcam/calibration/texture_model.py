@@ -18,8 +18,8 @@ class TextureModel:
     directions: (h, w, 3) in camera axes (y down, z forward) over the picture, texel centres on the picture's
     coordinates from 0 to 1; a direction against the axis, (0, 0, -1), means no ray. positions: (n, m, 2), coordinates
     in the picture from 0 to 1, over octahedral coordinates with the axis in the middle; negative if there is none.
-    matrix: (3, 3), from these coordinates to pixels. Projections start from `positions` and are refined until `directions`
-    agree, so that both maps are inverses of each other.
+    matrix: (3, 3), from these coordinates to pixels. Projections start from `positions` and are refined until
+    `directions` agree, so that both maps are inverses of each other.
     """
 
     directions: Array

@@ -10,13 +10,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..arrays import Array
-from ..calibration import Calibration
 from ..distortion import BrownConrady
 from ..document import Document
 from ..entries import Entries
 from ..model import CentralModel, camera_matrix
 from ..opencv_models import distortion_of, fisheye_distortion
 from ..projections import DoubleSphere, Equidistant, ExtendedUnified, FieldOfViewAngle, Perspective, Projection
+from ..stated_camera import StatedCamera
 from ..transforms import inverse_of, rigid
 from .format import Cameras, Format, Options
 
@@ -27,14 +27,14 @@ MODELS: dict[str, tuple[str, Make]] = {
     "pinhole": ("", lambda _: (Perspective(), BrownConrady())),
     "pinhole-radtan8": ("k1 k2 p1 p2 k3 k4 k5 k6", lambda p: (Perspective(), distortion_of(p))),
     "kb4": ("k1 k2 k3 k4", lambda p: (Equidistant(np.pi), fisheye_distortion(p))),
-    "ds": ("xi alpha", lambda p: (DoubleSphere(*p), BrownConrady())),
-    "eucm": ("alpha beta", lambda p: (ExtendedUnified(*p), BrownConrady())),
+    "ds": ("xi alpha", lambda p: (DoubleSphere(p[0], p[1]), BrownConrady())),
+    "eucm": ("alpha beta", lambda p: (ExtendedUnified(p[0], p[1]), BrownConrady())),
     "ucm": ("alpha", lambda p: (ExtendedUnified(p[0], 1.0), BrownConrady())),
     "fov": ("w", lambda p: (FieldOfViewAngle(p[0]), BrownConrady())),
 }
 
 
-def _camera(body: Entries, index: int) -> Calibration:
+def _camera(body: Entries, index: int) -> StatedCamera:
     entries = list(body.children("intrinsics"))[index]
     model = entries.choice("camera_type", MODELS)
     names, make = MODELS[model]
@@ -43,7 +43,7 @@ def _camera(body: Entries, index: int) -> Calibration:
     matrix = camera_matrix(
         values.positive("fx"), values.positive("fy"), values.number("cx") + 0.5, values.number("cy") + 0.5
     )
-    return Calibration(
+    return StatedCamera(
         CentralModel(projection, distortion, matrix),
         _size(body, index),
         model,

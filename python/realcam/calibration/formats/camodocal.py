@@ -10,11 +10,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..calibration import Calibration
 from ..document import Document
 from ..entries import Entries
 from ..model import CentralModel, camera_matrix
 from ..opencv_models import fisheye_model, omnidirectional_model, pinhole_model
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole
 
 
@@ -52,10 +52,10 @@ MODELS: dict[str, Callable[[Entries], CentralModel]] = {
 }
 
 
-def _camera(entries: Entries) -> Calibration:
+def _camera(entries: Entries) -> StatedCamera:
     model = entries.choice("model_type", MODELS)
     name = entries.values.get("camera_name")
-    return Calibration(
+    return StatedCamera(
         MODELS[model](entries),
         entries.size("image_width", "image_height"),
         model,

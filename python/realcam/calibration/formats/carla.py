@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..calibration import Calibration
 from ..entries import Entries
 from ..model import camera_matrix
 from ..opencv_models import pinhole_model
+from ..stated_camera import StatedCamera
 from .format import Format, sole
 
 DISTORTIONS = {"lens_k": -1.0, "lens_kcube": 0.0}  # with CARLA's defaults
 
 
-def _camera(entries: Entries) -> Calibration:
+def _camera(entries: Entries) -> StatedCamera:
     width, height = entries.size("image_size_x", "image_size_y")
     for key, default in DISTORTIONS.items():
         if entries.number(key, default):
@@ -26,7 +26,7 @@ def _camera(entries: Entries) -> Calibration:
         entries.fail("fov", "a horizontal angle of view in degrees between 0 and 180")
     f = width / 2 / float(np.tan(np.radians(entries.number("fov")) / 2))
     model = pinhole_model(camera_matrix(f, f, width / 2, height / 2))
-    return Calibration(model, (width, height), "pinhole", format="carla", file_values=dict(entries.values))
+    return StatedCamera(model, (width, height), "pinhole", format="carla", file_values=dict(entries.values))
 
 
 FORMAT = Format(

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..calibration import Calibration
 from ..distortion import BrownConrady
 from ..document import Document
 from ..entries import Entries
@@ -20,6 +19,7 @@ from ..opencv_models import distortion_of, fisheye_distortion
 from ..projections import Equidistant, ExtendedUnified, FieldOfViewAngle, Perspective, Projection
 from ..radial import RationalRadius, even_powers
 from ..ray_polynomials import RayPolynomial
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options
 
 Coefficients = Sequence[float]
@@ -82,19 +82,19 @@ MODELS = {
     13: _Model("DIVISION", 2, 1, _division),
     14: _Model("SIMPLE_FISHEYE", 1, 0, _angle_polynomial),
     15: _Model("FISHEYE", 2, 0, _angle_polynomial),
-    16: _Model("EUCM", 2, 2, lambda c: (ExtendedUnified(*c), BrownConrady())),
+    16: _Model("EUCM", 2, 2, lambda c: (ExtendedUnified(c[0], c[1]), BrownConrady())),
 }
 BY_NAME = {model.name: model for model in MODELS.values()}
 
 
-def _camera(entries: Entries, model: _Model, name: str) -> Calibration:
+def _camera(entries: Entries, model: _Model, name: str) -> StatedCamera:
     values = entries.numbers("parameters", model.parameters)
     fx, fy = values[0], values[model.focal_lengths - 1]
     if fx <= 0 or fy <= 0:
         entries.fail("parameters", "positive focal lengths first")
     cx, cy, *coefficients = values[model.focal_lengths :]
     projection, distortion = model.make(coefficients)
-    return Calibration(
+    return StatedCamera(
         CentralModel(projection, distortion, camera_matrix(fx, fy, cx, cy)),
         entries.size("width", "height"),
         model.name,
@@ -104,7 +104,7 @@ def _camera(entries: Entries, model: _Model, name: str) -> Calibration:
     )
 
 
-def _text_camera(document: Document, number: int, fields: list[str]) -> Calibration:
+def _text_camera(document: Document, number: int, fields: list[str]) -> StatedCamera:
     if len(fields) < 5:
         document.fail(f"line {number}: expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]")
     if fields[1] not in BY_NAME:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import NamedTuple, NoReturn
 
-from ..calibration import Calibration
 from ..document import Document
+from ..stated_camera import StatedCamera
 
 
 class Options(NamedTuple):
@@ -16,13 +16,13 @@ class Options(NamedTuple):
     crop_factor: float | None = None
 
 
-Cameras = Mapping[str, Callable[[], Calibration]]
+Cameras = Mapping[str, Callable[[], StatedCamera]]
 
 
 class Format(NamedTuple):
     """A file format.
 
-    name: as in Calibration.format. matches: True if a document looks like a file of the format. cameras: the cameras
+    name: as in StatedCamera.format. matches: True if a document looks like a file of the format. cameras: the cameras
     of a file by name, each as a function that reads it.
     """
 
@@ -38,7 +38,7 @@ def stated_size(document: Document, options: Options) -> tuple[int, int]:
     return options.size
 
 
-def sole(name: str, read: Callable[[], Calibration]) -> Cameras:
+def sole(name: str, read: Callable[[], StatedCamera]) -> Cameras:
     """Returns the cameras of a file with one camera."""
     return {name: read}
 

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..arrays import Array
-from ..calibration import Calibration
 from ..distortion import BrownConrady
 from ..document import Document
 from ..entries import Entries
@@ -19,6 +18,7 @@ from ..model import CentralModel
 from ..projections import Equidistant
 from ..radial import RationalRadius
 from ..ray_polynomials import AnglePolynomial
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole, unknown_model
 
 # Margin about the angle of the farthest corner, for a file without a largest angle.
@@ -58,7 +58,7 @@ def angle_limit(value: float) -> float:
     return min(value, np.pi)
 
 
-def _ncore_camera(entries: Entries) -> Calibration:
+def _ncore_camera(entries: Entries) -> StatedCamera:
     reference = entries.choice("reference_poly", MAKERS)
     if entries.values.get("external_distortion_parameters") is not None:
         entries.fail("external_distortion_parameters", "null; distortions by a windshield are not read")
@@ -67,7 +67,7 @@ def _ncore_camera(entries: Entries) -> Calibration:
     coefficients = polynomial(entries, POLYNOMIALS[reference])
     limit = angle_limit(entries.positive("max_angle"))
     model = MAKERS[reference](coefficients, pixel_matrix((x + 0.5, y + 0.5), c, d, e), limit)
-    return Calibration(
+    return StatedCamera(
         model,
         entries.size("resolution"),
         "ftheta",
@@ -77,7 +77,7 @@ def _ncore_camera(entries: Entries) -> Calibration:
     )
 
 
-def _rig_camera(entries: Entries, name: str) -> Calibration:
+def _rig_camera(entries: Entries, name: str) -> StatedCamera:
     properties = entries.child("properties")
     if properties.text("Model") != "ftheta":
         unknown_model(entries.document, f"{properties.where}Model", properties.text("Model"), {"ftheta": None})
@@ -94,7 +94,7 @@ def _rig_camera(entries: Entries, name: str) -> Calibration:
     make = MAKERS[RIG_POLYNOMIALS[direction]]
     limit = _corner_angle(make(coefficients, matrix, np.pi), size) * CORNER_MARGIN
     model = make(coefficients, matrix, angle_limit(limit))
-    return Calibration(
+    return StatedCamera(
         model, size, "ftheta", name=name, format="rig", pixel_origin=0.0, file_values=dict(properties.values)
     )
 

@@ -10,7 +10,6 @@ from collections.abc import Callable
 import numpy as np
 
 from ..arrays import Array
-from ..calibration import Calibration
 from ..distortion import BrownConrady
 from ..document import Document
 from ..entries import Entries
@@ -25,6 +24,7 @@ from ..projections import (
     Projection,
     UnifiedSphere,
 )
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options
 
 # Projections by camera_model, and the number of intrinsics in front of fu, fv, pu, pv.
@@ -76,8 +76,8 @@ def _transforms(entries: Entries) -> dict[str, Array]:
     return found
 
 
-def _camera(entries: Entries, name: str) -> Calibration:
-    return Calibration(
+def _camera(entries: Entries, name: str) -> StatedCamera:
+    return StatedCamera(
         _model(entries),
         entries.size("resolution"),
         f"{entries.text('camera_model')}-{entries.text('distortion_model')}",

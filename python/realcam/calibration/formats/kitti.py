@@ -10,11 +10,11 @@ import re
 import numpy as np
 
 from ..arrays import Array
-from ..calibration import Calibration
 from ..document import Document
 from ..entries import Entries
 from ..model import shift
 from ..opencv_models import pinhole_model
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, stated_size
 
 LINE = re.compile(r"^([A-Za-z]\w*):[ \t]*(.*)$", re.MULTILINE)
@@ -25,7 +25,7 @@ def _entries(document: Document) -> Entries:
     return Entries(document, dict(LINE.findall(document.text)))
 
 
-def _raw(entries: Entries, number: str) -> Calibration:
+def _raw(entries: Entries, number: str) -> StatedCamera:
     """Returns the camera before rectification."""
     matrix = entries.matrix(f"K_{number}", 3, 3)
     D = entries.numbers(f"D_{number}", 5)
@@ -35,7 +35,7 @@ def _raw(entries: Entries, number: str) -> Calibration:
         extrinsics["camera_from_camera0"] = pose
     if f"R_rect_{number}" in entries:
         extrinsics["rectified_from_camera"] = _transform(entries.matrix(f"R_rect_{number}", 3, 3), np.zeros(3))
-    return Calibration(
+    return StatedCamera(
         pinhole_model(shift(0.5, 0.5) @ matrix, D),
         entries.size(f"S_{number}"),
         "opencv5",
@@ -47,7 +47,7 @@ def _raw(entries: Entries, number: str) -> Calibration:
     )
 
 
-def _rectified(entries: Entries, key: str, options: Options) -> Calibration:
+def _rectified(entries: Entries, key: str, options: Options) -> StatedCamera:
     """Returns a rectified camera. The last column of P is K times the position of rectified camera 0 in its axes."""
     P = entries.matrix(key, 3, 4)
     K = P[:, :3]
@@ -55,7 +55,7 @@ def _rectified(entries: Entries, key: str, options: Options) -> Calibration:
         entries.fail(key, "a projection matrix with positive focal lengths and the last row 0 0 1 tz")
     size_key = f"S_{key[2:]}"  # S_rect_02 of P_rect_02
     size = entries.size(size_key) if size_key in entries else stated_size(entries.document, options)
-    return Calibration(
+    return StatedCamera(
         pinhole_model(shift(0.5, 0.5) @ K),
         size,
         "pinhole",

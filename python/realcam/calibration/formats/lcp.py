@@ -9,11 +9,11 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 
-from ..calibration import Calibration
 from ..document import Document
 from ..entries import Entries
 from ..model import camera_matrix
 from ..opencv_models import fisheye_model, pinhole_model
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, unknown_model
 
 PREFIX = "stCamera:"
@@ -43,7 +43,7 @@ def _profiles(document: Document) -> Iterator[tuple[Entries, Entries]]:
         )
 
 
-def _camera(profile: Entries, model: Entries, name: str) -> Calibration:
+def _camera(profile: Entries, model: Entries, name: str) -> StatedCamera:
     kind = model.where.rstrip(".")
     width, height = profile.size("ImageWidth", "ImageLength")
     longer = max(width, height)
@@ -61,7 +61,7 @@ def _camera(profile: Entries, model: Entries, name: str) -> Calibration:
         camera_model = pinhole_model(matrix, [k1, k2, p1, p2, k3])
     else:
         unknown_model(model.document, "profile", kind, MODELS)
-    return Calibration(camera_model, (width, height), kind, name=name, format="lcp", file_values=dict(model.values))
+    return StatedCamera(camera_model, (width, height), kind, name=name, format="lcp", file_values=dict(model.values))
 
 
 def cameras(document: Document, options: Options) -> Cameras:

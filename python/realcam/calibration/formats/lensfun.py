@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..calibration import Calibration
 from ..distortion import BrownConrady
 from ..document import Document
 from ..entries import Entries, element_entries
 from ..model import CentralModel, camera_matrix
 from ..projections import Perspective
 from ..radial import RationalRadius
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, stated_size
 
 DIAGONAL_MM = float(np.hypot(36, 24))  # of a film with crop factor 1
@@ -51,7 +51,7 @@ def _aspect_ratio(entries: Entries) -> float:
     return parts.positive("aspect-ratio") / parts.positive("height")
 
 
-def _camera(lens: _Lens, name: str, options: Options) -> Calibration:
+def _camera(lens: _Lens, name: str, options: Options) -> StatedCamera:
     size = stated_size(lens.entries.document, options)
     lens_crop = lens.entries.positive("cropfactor") if "cropfactor" in lens.entries else 1.0
     crop = options.crop_factor or lens_crop
@@ -67,7 +67,7 @@ def _camera(lens: _Lens, name: str, options: Options) -> Calibration:
         Perspective(), BrownConrady(RationalRadius(factor)), camera_matrix(focal, focal, size[0] / 2, size[1] / 2)
     )
     stated = dict(lens.distortion.values)
-    return Calibration(
+    return StatedCamera(
         model, size, lens.distortion.text("model"), name=name, format="lensfun", pixel_origin=0.0, file_values=stated
     )
 

@@ -1,6 +1,6 @@
 """MATLAB's cameraParameters, cameraIntrinsics and fisheyeIntrinsics as jsonencode writes them. First pixel: 1.
 
-Sources: MathWorks documentation of cameraParameters, fisheyeIntrinsics and "Fisheye Calibration Basics";
+Sources: MathWorks documentation of cameraParameters, fisheyeIntrinsics and "Fisheye StatedCamera Basics";
 D. Scaramuzza, A. Martinelli and R. Siegwart, ICVS 2006.
 """
 
@@ -9,13 +9,13 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
-from ..calibration import Calibration
 from ..distortion import BrownConrady
 from ..document import Document
 from ..entries import Entries
 from ..model import CentralModel, camera_matrix, shift
 from ..opencv_models import pinhole_model
 from ..ray_polynomials import RayPolynomial
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole, stated_size
 
 TO_REALCAM = shift(-0.5, -0.5)
@@ -47,12 +47,12 @@ def _matrix(entries: Entries) -> Array:
     return matrix
 
 
-def _pinhole(entries: Entries, options: Options) -> Calibration:
+def _pinhole(entries: Entries, options: Options) -> StatedCamera:
     matrix = _matrix(entries)
     radial = [*entries.numbers("RadialDistortion", 2, 3), 0.0][:3]
     tangential = entries.numbers("TangentialDistortion", 2) if "TangentialDistortion" in entries else [0.0, 0.0]
     D = [radial[0], radial[1], *tangential, radial[2]]
-    return Calibration(
+    return StatedCamera(
         pinhole_model(TO_REALCAM @ matrix, D),
         _size(entries, options),
         "cameraParameters",
@@ -62,7 +62,7 @@ def _pinhole(entries: Entries, options: Options) -> Calibration:
     )
 
 
-def _fisheye(entries: Entries, options: Options) -> Calibration:
+def _fisheye(entries: Entries, options: Options) -> StatedCamera:
     a0, a2, a3, a4 = entries.numbers("MappingCoefficients", 4)
     if a0 <= 0:
         entries.fail("MappingCoefficients", "a positive coefficient first")
@@ -76,7 +76,7 @@ def _fisheye(entries: Entries, options: Options) -> Calibration:
         stretch, np.array([[x - cx + 0.5, y - cy + 0.5] for x in (0, size[0]) for y in (0, size[1])]).T
     )
     longest = CORNER_MARGIN * float(np.hypot(*corners).max())
-    return Calibration(
+    return StatedCamera(
         CentralModel(RayPolynomial((a0, 0.0, a2, a3, a4), longest=longest), BrownConrady(), matrix),
         size,
         "fisheyeIntrinsics",
@@ -86,7 +86,7 @@ def _fisheye(entries: Entries, options: Options) -> Calibration:
     )
 
 
-def _camera(entries: Entries, options: Options) -> Calibration:
+def _camera(entries: Entries, options: Options) -> StatedCamera:
     if "Intrinsics" in entries:
         entries = entries.child("Intrinsics")
     return _fisheye(entries, options) if "MappingCoefficients" in entries else _pinhole(entries, options)

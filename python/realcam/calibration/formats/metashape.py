@@ -9,20 +9,20 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 
-from ..calibration import Calibration
 from ..distortion import BrownConrady
 from ..document import Document
 from ..entries import Entries, element_entries
 from ..model import CentralModel
 from ..projections import Equidistant, Perspective, Projection
 from ..radial import RationalRadius, even_powers
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole, unknown_model
 
 PROJECTIONS: dict[str, type[Projection]] = {"frame": Perspective, "fisheye": Equidistant}
 COEFFICIENTS = ("f", "cx", "cy", "b1", "b2", "k1", "k2", "k3", "k4", "p1", "p2", "p3", "p4")
 
 
-def _camera(entries: Entries, size: tuple[int, int], projection: str, name: str) -> Calibration:
+def _camera(entries: Entries, size: tuple[int, int], projection: str, name: str) -> StatedCamera:
     if projection not in PROJECTIONS:
         unknown_model(entries.document, f"{entries.where}type", projection, PROJECTIONS)
     entries.positive("f")
@@ -34,15 +34,15 @@ def _camera(entries: Entries, size: tuple[int, int], projection: str, name: str)
     matrix = np.array([[f + b1, b2, size[0] / 2 + cx], [0, f, size[1] / 2 + cy], [0, 0, 1]])
     stated = {key: entries.number(key) for key in COEFFICIENTS if key in entries}
     model = CentralModel(PROJECTIONS[projection](), distortion, matrix)
-    return Calibration(model, size, projection, name=name, format="metashape", file_values=stated)
+    return StatedCamera(model, size, projection, name=name, format="metashape", file_values=stated)
 
 
-def _exported(document: Document) -> Calibration:
+def _exported(document: Document) -> StatedCamera:
     entries = element_entries(document, document.xml)
     return _camera(entries, entries.size("width", "height"), entries.text("projection", "frame"), "")
 
 
-def _sensor(document: Document, sensor: ET.Element, name: str) -> Calibration:
+def _sensor(document: Document, sensor: ET.Element, name: str) -> StatedCamera:
     calibrations = sensor.findall("calibration")
     adjusted = [found for found in calibrations if found.get("class") == "adjusted"] or calibrations
     if not adjusted:

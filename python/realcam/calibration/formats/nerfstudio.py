@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..calibration import Calibration
 from ..distortion import BrownConrady
 from ..document import Document
 from ..entries import Entries
@@ -16,6 +15,7 @@ from ..model import CentralModel, camera_matrix
 from ..opencv_models import fisheye_model
 from ..projections import Perspective
 from ..radial import RationalRadius, even_powers
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole, unknown_model
 
 PERSPECTIVE = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE")
@@ -51,11 +51,11 @@ def _model(entries: Entries, size: tuple[int, int]) -> tuple[CentralModel, str]:
     return CentralModel(Perspective(), BrownConrady(RationalRadius(even_powers(k)), tangential), matrix), name
 
 
-def _camera(entries: Entries, name: str) -> Calibration:
+def _camera(entries: Entries, name: str) -> StatedCamera:
     size = entries.size("w", "h")
     model, model_name = _model(entries, size)
     stated = {key: value for key, value in entries.values.items() if key not in ("frames", "transform_matrix")}
-    return Calibration(model, size, model_name, name=name, format="nerfstudio", file_values=stated)
+    return StatedCamera(model, size, model_name, name=name, format="nerfstudio", file_values=stated)
 
 
 def _has_focal_length(values: object) -> bool:

@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from ..calibration import Calibration
 from ..document import Document
 from ..entries import Entries
 from ..errors import CalibrationFileError
 from ..model import shift
 from ..opencv_models import pinhole_model
+from ..stated_camera import StatedCamera
 from ..transforms import inverse_of, rigid
 from .format import Cameras, Format, Options, stated_size
 
@@ -34,7 +34,7 @@ def _channels(document: Document) -> dict[str, str]:
     return {token: channel for token, channel in pairs if isinstance(token, str) and isinstance(channel, str)}
 
 
-def _camera(entries: Entries, name: str, options: Options) -> Calibration:
+def _camera(entries: Entries, name: str, options: Options) -> StatedCamera:
     matrix = entries.matrix("camera_intrinsic", 3, 3)
     if matrix[2].tolist() != [0, 0, 1] or matrix[0, 0] <= 0 or matrix[1, 1] <= 0:
         entries.fail("camera_intrinsic", "fx 0 cx, 0 fy cy, 0 0 1 with positive fx and fy")
@@ -42,7 +42,7 @@ def _camera(entries: Entries, name: str, options: Options) -> Calibration:
     if not any(rotation):
         entries.fail("rotation", "a quaternion w, x, y, z that is not 0")
     pose = rigid(rotation, entries.numbers("translation", 3))
-    return Calibration(
+    return StatedCamera(
         pinhole_model(shift(0.5, 0.5) @ matrix),
         stated_size(entries.document, options),
         "pinhole",

@@ -12,12 +12,12 @@ import re
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from ..calibration import Calibration
 from ..distortion import BrownConrady
 from ..document import Document
 from ..entries import Entries
 from ..model import CentralModel
 from ..ocam_projection import InversePolynomial
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole
 
 KEYS = ("pol", "invpol", "centre", "affine", "size")  # in the order of the file
@@ -49,7 +49,7 @@ def _largest_angle(pol: list[float], invpol: list[float]) -> float:
     return float(angles[np.argmax(is_wrong)]) if is_wrong.any() else np.pi
 
 
-def _camera(document: Document) -> Calibration:
+def _camera(document: Document) -> StatedCamera:
     entries = _entries(document)
     pol, invpol = _polynomial(entries, "pol"), _polynomial(entries, "invpol")
     row, column = entries.numbers("centre", 2)
@@ -64,7 +64,7 @@ def _camera(document: Document) -> Calibration:
     if not limit:
         entries.fail("invpol", "the inverse of pol")
     projection = InversePolynomial(tuple(invpol), limit)
-    return Calibration(
+    return StatedCamera(
         CentralModel(projection, BrownConrady(), matrix),
         size,
         "ocam",

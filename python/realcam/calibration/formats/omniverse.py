@@ -10,11 +10,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..calibration import Calibration
 from ..document import Document
 from ..entries import Entries
 from ..model import CameraModel, camera_matrix
 from ..opencv_models import fisheye_model, pinhole_model
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options
 from .ftheta import angle_limit, backward_model, pixel_matrix, polynomial
 from .texture import lut_model
@@ -63,7 +63,7 @@ MODELS: dict[str, Read] = {
 WITHOUT_EQUATION = ("kannalaBrandtK3", "radTanThinPrism")
 
 
-def _camera(document: Document, name: str, values: dict[str, object]) -> Calibration:
+def _camera(document: Document, name: str, values: dict[str, object]) -> StatedCamera:
     prim = Entries(document, values, f"{name}.")
     model = prim.text(f"{PREFIX}model")
     if model in WITHOUT_EQUATION:
@@ -72,7 +72,7 @@ def _camera(document: Document, name: str, values: dict[str, object]) -> Calibra
     prefix = f"{PREFIX}{model}:"
     own = {key.removeprefix(prefix): value for key, value in values.items() if key.startswith(prefix)}
     camera_model, size = MODELS[model](Entries(document, own, f"{name}.{prefix}"))
-    return Calibration(camera_model, size, model, name=name, format="omniverse", file_values=own)
+    return StatedCamera(camera_model, size, model, name=name, format="omniverse", file_values=own)
 
 
 def cameras(document: Document, options: Options) -> Cameras:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from typing import Any
 
-from ..calibration import Calibration
 from ..document import Document
 from ..entries import Entries
 from ..model import shift
 from ..opencv_models import LENGTHS, fisheye_model, pinhole_model
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole, stated_size
 
 MATRICES = ("camera_matrix", "Camera_Matrix", "cameraMatrix", "K", "mtx")
@@ -44,7 +44,7 @@ def _size(entries: Entries, options: Options) -> tuple[int, int]:
     return entries.size(*keys) if keys else stated_size(entries.document, options)
 
 
-def _camera(entries: Entries, matrix_key: str, coefficient_key: str, options: Options, name: str = "") -> Calibration:
+def _camera(entries: Entries, matrix_key: str, coefficient_key: str, options: Options, name: str = "") -> StatedCamera:
     matrix = entries.matrix(matrix_key, 3, 3)
     if matrix[2].tolist() != [0, 0, 1] or matrix[0, 0] <= 0 or matrix[1, 1] <= 0:
         entries.fail(matrix_key, "fx 0 cx, 0 fy cy, 0 0 1 with positive fx and fy")
@@ -52,7 +52,7 @@ def _camera(entries: Entries, matrix_key: str, coefficient_key: str, options: Op
     counts = (4,) if is_fisheye else LENGTHS[1:]
     D = entries.numbers(coefficient_key, *counts) if coefficient_key in entries else []
     model = (fisheye_model if is_fisheye else pinhole_model)(shift(0.5, 0.5) @ matrix, D)
-    return Calibration(
+    return StatedCamera(
         model,
         _size(entries, options),
         "opencv_fisheye" if is_fisheye else f"opencv{len(D)}",

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..calibration import Calibration
 from ..document import Document
 from ..entries import Entries
 from ..model import CentralModel, shift
 from ..opencv_models import fisheye_model, pinhole_model
+from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole
 
 # Models by name, with the numbers of coefficients that they may have.
@@ -47,7 +47,7 @@ def _region(entries: Entries) -> tuple[np.ndarray, tuple[int, int]]:
     return np.diag([1 / steps[0], 1 / steps[1], 1.0]) @ shift(-left, -top), size
 
 
-def _camera(entries: Entries) -> Calibration:
+def _camera(entries: Entries) -> StatedCamera:
     region, size = _region(entries)
     extrinsics = {}
     rotation = _key(entries, "rectification_matrix", "R", "r")
@@ -57,7 +57,7 @@ def _camera(entries: Entries) -> Calibration:
     projection = _key(entries, "projection_matrix", "P", "p")
     values = {"projection_matrix": entries.matrix(projection, 3, 4)} if projection in entries else {}
     name = entries.values.get("camera_name")
-    return Calibration(
+    return StatedCamera(
         _model(entries).transformed(region),
         size,
         entries.text("distortion_model"),
