@@ -29,7 +29,8 @@ def rows_of(values: ArrayLike, columns: int, name: str) -> Array:
 def picture_size(size: object) -> tuple[int, int]:
     """Returns (width, height) in pixels. Raises InputError unless both are whole and from 1 to 1,000,000."""
     try:
-        width, height = size  # type: ignore[misc]
+        stated: Any = size
+        width, height = stated
         whole = int(width), int(height)
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"size must be (width, height) in pixels, not {size!r:.60}") from None

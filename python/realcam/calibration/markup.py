@@ -53,7 +53,7 @@ def parsed_yaml(text: str, fail: Fail) -> Any:
     except ImportError:
         raise InputError("reading YAML files needs PyYAML; pip install 'realcam[calibration]'") from None
 
-    class Loader(yaml.SafeLoader):
+    class Loader(yaml.SafeLoader):  # type: ignore[misc]
         def compose_node(self, parent: Any, index: Any) -> Any:
             if self.check_event(yaml.AliasEvent):
                 mark = self.peek_event().start_mark

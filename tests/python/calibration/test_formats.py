@@ -217,3 +217,18 @@ def test_textures_outside_the_folder_are_refused(tmp_path: Path) -> None:
 def test_a_size_that_the_file_contradicts_is_refused(tmp_path: Path) -> None:
     with pytest.raises(rc.InputError, match="resized"):
         rc.Calibration.load(written(tmp_path, "a.yaml", CAMERA_INFO), size=(320, 240))
+
+
+def test_3de4_distorts_by_the_inverse_of_its_polynomial(tmp_path: Path) -> None:
+    text = """LD_3DE4_Radial_Standard_Degree_4 {
+ tde4_focal_length_cm 2
+ tde4_filmback_width_cm 2.4
+ tde4_filmback_height_cm 1.8
+ Distortion_Degree_2 0.1
+ name Lens1
+}
+"""
+    found = rc.Calibration.load(written(tmp_path, "lens.nk", text), size=(640, 480))
+    distorted = 0.5 * (1 + 0.1 * 0.25)  # of a point at half of the half diagonal, 1.5 cm
+    pixels, _ = found.project([[0, -distorted * 1.5 / 2, 1]])
+    assert pixels[0] == pytest.approx([320, 240 - 0.75 / 1.8 * 480], abs=1e-9)

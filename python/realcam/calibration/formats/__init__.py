@@ -18,6 +18,7 @@ from . import (
     omniverse,
     opencv,
     ros,
+    three_de,
 )
 from .format import Format
 
@@ -26,6 +27,7 @@ FORMATS: tuple[Format, ...] = (
     kalibr.FORMAT,
     basalt.FORMAT,
     ocam.FORMAT,
+    three_de.FORMAT,
     colmap.TEXT,
     colmap.BINARY,
     nerfstudio.FORMAT,

@@ -132,7 +132,7 @@ def binary_cameras(document: Document, options: Options) -> Cameras:
             values = struct.unpack_from(f"<{model.parameters}d", content, position + 24)
             position += 24 + 8 * model.parameters
             named = Entries(document, {"width": width, "height": height, "parameters": values}, f"camera {camera}: ")
-            found[str(camera)] = lambda named=named, model=model, camera=camera: _camera(named, model, str(camera))  # type: ignore[misc]
+            found[str(camera)] = lambda named=named, model=model, camera=camera: _camera(named, model, str(camera))
     except struct.error:
         document.fail(f"ends before its last camera, at byte {len(content)}")
     if position != len(content):

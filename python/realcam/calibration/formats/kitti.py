@@ -75,11 +75,9 @@ def _transform(rotation: Array, translation: Array) -> Array:
 
 def cameras(document: Document, options: Options) -> Cameras:
     entries = _entries(document)
-    raw = {key[2:]: lambda key=key: _raw(entries, key[2:]) for key in entries.values if re.fullmatch(r"K_\d+", key)}  # type: ignore[misc]
+    raw = {key[2:]: lambda key=key: _raw(entries, key[2:]) for key in entries.values if re.fullmatch(r"K_\d+", key)}
     rectified = {
-        key: lambda key=key: _rectified(entries, key, options)  # type: ignore[misc]
-        for key in entries.values
-        if PROJECTION.fullmatch(key)
+        key: lambda key=key: _rectified(entries, key, options) for key in entries.values if PROJECTION.fullmatch(key)
     }
     return {**raw, **rectified}
 

@@ -7,7 +7,7 @@ Focal lengths are in units of the longer side, centres in units of the width and
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from ..document import Document
 from ..entries import Entries
@@ -65,11 +65,11 @@ def _camera(profile: Entries, model: Entries, name: str) -> StatedCamera:
 
 
 def cameras(document: Document, options: Options) -> Cameras:
-    found = {}
+    found: dict[str, Callable[[], StatedCamera]] = {}
     for profile, model in _profiles(document):
         stated = (str(profile.values.get(key, "")) for key in ("FocalLength", "FocusDistance", "ApertureValue"))
         name = " ".join(text for text in (str(profile.values.get("Lens", "camera")), *stated) if text)
-        found[name] = lambda p=profile, m=model, name=name: _camera(p, m, name)  # type: ignore[misc]
+        found[name] = lambda p=profile, m=model, name=name: _camera(p, m, name)
     return found
 
 

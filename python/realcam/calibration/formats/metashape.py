@@ -6,6 +6,7 @@ Source: Agisoft Metashape User Manual, Appendix D, "Camera models".
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
 
 import numpy as np
 
@@ -59,12 +60,12 @@ def _sensor(document: Document, sensor: ET.Element, name: str) -> StatedCamera:
 def cameras(document: Document, options: Options) -> Cameras:
     if document.xml.tag == "calibration":
         return sole("camera", lambda: _exported(document))
-    found = {}
+    found: dict[str, Callable[[], StatedCamera]] = {}
     for sensor in document.xml.iter("sensor"):
         name = sensor.get("label") or sensor.get("id") or str(len(found))
         if name in found:
             name = f"{name} {sensor.get('id')}"
-        found[name] = lambda sensor=sensor, name=name: _sensor(document, sensor, name)  # type: ignore[misc]
+        found[name] = lambda sensor=sensor, name=name: _sensor(document, sensor, name)
     return found
 
 

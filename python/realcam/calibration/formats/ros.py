@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
+from ..arrays import Array
 from ..document import Document
 from ..entries import Entries
 from ..model import CentralModel, shift
@@ -12,7 +15,7 @@ from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole
 
 # Models by name, with the numbers of coefficients that they may have.
-MODELS = {
+MODELS: dict[str, tuple[Callable[[Array, list[float]], CentralModel], tuple[int, ...]]] = {
     "plumb_bob": (pinhole_model, (0, 4, 5)),
     "rational_polynomial": (pinhole_model, (8, 12, 14)),
     "equidistant": (fisheye_model, (4,)),
