@@ -123,13 +123,14 @@ class CentralModel:
         # Solved by Cramer's rule, whose rounding does not depend on the other pixels of the array.
         (a, b, u0), (c, d, v0) = self.matrix[:2]
         u, v = pixels[:, 0] - u0, pixels[:, 1] - v0
-        plane = np.column_stack([d * u - b * v, a * v - c * u]) / (a * d - b * c)
+        plane: Array = np.column_stack([d * u - b * v, a * v - c * u]) / (a * d - b * c)
         if self.tilt is None:
             return plane
         inverse = np.linalg.inv(self.tilt)
         upright = plane @ inverse[:, :2].T + inverse[:, 2]
         scale = upright[:, 2] / inverse[2, 2]
-        return upright[:, :2] / np.where(scale > 0, upright[:, 2], np.nan)[:, None]
+        plane = upright[:, :2] / np.where(scale > 0, upright[:, 2], np.nan)[:, None]
+        return plane
 
 
 def camera_matrix(fx: float, fy: float, cx: float, cy: float, skew: float = 0.0) -> Array:

@@ -43,7 +43,8 @@ def tilt_of(coefficients: Sequence[float]) -> Array | None:
     about_x = np.array([[1, 0, 0], [0, np.cos(x), np.sin(x)], [0, -np.sin(x), np.cos(x)]])
     about_y = np.array([[np.cos(y), 0, -np.sin(y)], [0, 1, 0], [np.sin(y), 0, np.cos(y)]])
     R = about_y @ about_x
-    return np.array([[R[2, 2], 0, -R[0, 2]], [0, R[2, 2], -R[1, 2]], [0, 0, 1]]) @ R
+    tilt: Array = np.array([[R[2, 2], 0, -R[0, 2]], [0, R[2, 2], -R[1, 2]], [0, 0, 1]]) @ R
+    return tilt
 
 
 def pinhole_model(matrix: Array, coefficients: Sequence[float] = ()) -> CentralModel:

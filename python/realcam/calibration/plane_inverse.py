@@ -31,7 +31,7 @@ def plane_inverse(function: Map, jacobian: Map, values: Array, start: Array) -> 
 
 def _newton(function: Map, jacobian: Map, values: Array, start: Array) -> Array:
     """Damped Newton iteration: steps that do not reduce the residual are halved."""
-    points = start.copy()
+    points: Array = start.copy()
     residual = values - function(points)
     size = np.hypot(*residual.T)
     damping = np.ones(len(points))
@@ -53,7 +53,6 @@ def _newton(function: Map, jacobian: Map, values: Array, start: Array) -> Array:
 def _solved(matrices: Array, right: Array) -> Array:
     a, b, c, d = matrices[:, 0, 0], matrices[:, 0, 1], matrices[:, 1, 0], matrices[:, 1, 1]
     determinant = a * d - b * c
-    return (
-        np.stack([(d * right[:, 0] - b * right[:, 1]), (a * right[:, 1] - c * right[:, 0])], axis=1)
-        / (determinant[:, None])
-    )
+    adjugate = np.stack([d * right[:, 0] - b * right[:, 1], a * right[:, 1] - c * right[:, 0]], axis=1)
+    solved: Array = adjugate / determinant[:, None]
+    return solved

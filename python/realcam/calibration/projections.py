@@ -194,7 +194,8 @@ class ExtendedUnified:
         return 1.0
 
     def _length(self, rho: Array, z: Array) -> Array:
-        return np.hypot(np.sqrt(self.beta) * rho, z)
+        length: Array = np.hypot(np.sqrt(self.beta) * rho, z)
+        return length
 
     def status(self, rho: Array, z: Array) -> Integers:
         return refused(z > -_sphere_limit(self.alpha) * self._length(rho, z), self.refusal)

@@ -46,7 +46,8 @@ class RationalRadius:
 
     def slope(self, s: Array) -> Array:
         """Returns the derivative of r(s)."""
-        return self.factor(s) + s * self.factor_slope(s)
+        slope: Array = self.factor(s) + s * self.factor_slope(s)
+        return slope
 
     @cached_property
     def is_identity(self) -> bool:
@@ -70,11 +71,13 @@ class RationalRadius:
 
     @cached_property
     def _top_slope(self) -> Array:
-        return Polynomial(self.top).deriv().coef
+        coefficients: Array = Polynomial(self.top).deriv().coef
+        return coefficients
 
     @cached_property
     def _bottom_slope(self) -> Array:
-        return Polynomial(self.bottom).deriv().coef
+        coefficients: Array = Polynomial(self.bottom).deriv().coef
+        return coefficients
 
 
 def even_powers(coefficients: Sequence[float]) -> tuple[float, ...]:

@@ -122,8 +122,10 @@ class RayPolynomial(_AngleOfDistance):
         return min(fold, self.longest)
 
     def _angle(self, distance: Array) -> Array:
-        return np.arctan2(distance, self._height(distance))
+        angle: Array = np.arctan2(distance, self._height(distance))
+        return angle
 
     def _slope(self, distance: Array) -> Array:
         height: Array = self._height(distance)
-        return (height - distance * self._height.deriv()(distance)) / (distance**2 + height**2)
+        slope: Array = (height - distance * self._height.deriv()(distance)) / (distance**2 + height**2)
+        return slope

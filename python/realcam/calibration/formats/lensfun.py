@@ -74,7 +74,7 @@ def _camera(lens: _Lens, name: str, options: Options) -> StatedCamera:
 
 def _lenses(document: Document) -> dict[str, _Lens]:
     """Returns the lenses by their model, with the focal length if there are several."""
-    found = {}
+    found: dict[str, _Lens] = {}
     for element in document.xml.iter("lens"):
         entries = element_entries(document, element)
         distortions = [element_entries(document, d) for d in element.iterfind("calibration/distortion")]
