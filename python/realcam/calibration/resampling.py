@@ -41,7 +41,7 @@ def sampled(image: Array, pixels: Array, interpolation: str) -> Array:
 
     if interpolation not in ORDERS:
         raise InputError(f'unknown interpolation "{interpolation!s:.40}"; expected one of {", ".join(ORDERS)}')
-    is_hidden: Booleans = np.isnan(pixels).any(axis=1)
+    is_hidden: Booleans = np.logical_or.reduce(np.isnan(pixels), axis=1)
     positions = np.where(is_hidden[:, None], 0.0, pixels - 0.5).T[::-1]
     channels = image[:, :, None] if image.ndim == 2 else image
     values = np.stack(

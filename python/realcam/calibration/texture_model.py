@@ -57,7 +57,7 @@ class TextureModel:
         place = np.full((len(points), 2), np.nan)
         octahedral = (_to_octahedral(unit[is_valid]) + 1) / 2
         # At the edge of the lens's picture some texels are not set; the others are near enough to start from.
-        is_set: Booleans = (self.positions >= 0).all(axis=2)
+        is_set: Booleans = np.logical_and.reduce(self.positions >= 0, axis=2)
         start, is_whole = _bilinear(self.positions, octahedral, is_set)
         found, is_solved = self._refined(start, unit[is_valid])
         place[is_valid] = np.where((is_whole | is_solved)[:, None], found, np.nan)
@@ -130,7 +130,7 @@ def _bilinear(texture: Array, place: Array, is_set: Booleans) -> tuple[Array, Bo
     share = position - cell
     values = np.zeros((len(place), texture.shape[2]))
     total = np.zeros(len(place))
-    whole: Booleans = np.isfinite(place).all(axis=1)
+    whole: Booleans = np.logical_and.reduce(np.isfinite(place), axis=1)
     for row in (0, 1):
         for column in (0, 1):
             x, y = cell[:, 0] + column, cell[:, 1] + row

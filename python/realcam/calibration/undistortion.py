@@ -31,7 +31,7 @@ class Undistortion:
 
     def is_before_fold(self, points: Array, largest: float) -> Booleans:
         found = self._distorted(points)
-        before = np.isfinite(found).all(axis=1)
+        before: Booleans = np.logical_and.reduce(np.isfinite(found), axis=1)
         before[before] = self._folds.is_before(found[before])
         return before
 

@@ -69,7 +69,7 @@ def cameras(document: Document, options: Options) -> Cameras:
     for profile, model in _profiles(document):
         stated = (str(profile.values.get(key, "")) for key in ("FocalLength", "FocusDistance", "ApertureValue"))
         name = " ".join(text for text in (str(profile.values.get("Lens", "camera")), *stated) if text)
-        found[name] = lambda p=profile, m=model, name=name: _camera(p, m, name)
+        found[name] = lambda p=profile, m=model, name=name: _camera(p, m, name)  # type: ignore[misc]
     return found
 
 

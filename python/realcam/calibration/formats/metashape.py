@@ -65,7 +65,7 @@ def cameras(document: Document, options: Options) -> Cameras:
         name = sensor.get("label") or sensor.get("id") or str(len(found))
         if name in found:
             name = f"{name} {sensor.get('id')}"
-        found[name] = lambda sensor=sensor, name=name: _sensor(document, sensor, name)
+        found[name] = lambda sensor=sensor, name=name: _sensor(document, sensor, name)  # type: ignore[misc]
     return found
 
 

@@ -104,7 +104,7 @@ def cameras(document: Document, options: Options) -> Cameras:
         values = dict(KNOB.findall(body))
         name = values.get("name", f"{model} {len(found)}")
         entries = Entries(document, values, f"{name}.")
-        found[name] = lambda e=entries, m=model, name=name: _camera(e, m, name, options)
+        found[name] = lambda e=entries, m=model, name=name: _camera(e, m, name, options)  # type: ignore[misc]
     return found
 
 
