@@ -54,30 +54,30 @@ class TextureModel:
         with np.errstate(invalid="ignore", divide="ignore"):
             unit = points / length[:, None]
         is_valid = np.isfinite(unit).all(axis=1)
-        place = np.full((len(points), 2), np.nan)
+        coordinates = np.full((len(points), 2), np.nan)
         octahedral = (_to_octahedral(unit[is_valid]) + 1) / 2
         # At the edge of the lens's picture some texels are not set; the others are near enough to start from.
         is_set: Booleans = np.logical_and.reduce(self.positions >= 0, axis=2)
         start, is_whole = _bilinear(self.positions, octahedral, is_set)
         found, is_solved = self._refined(start, unit[is_valid])
-        place[is_valid] = np.where((is_whole | is_solved)[:, None], found, np.nan)
-        pixels = place @ self.matrix[:2, :2].T + self.matrix[:2, 2]
+        coordinates[is_valid] = np.where((is_whole | is_solved)[:, None], found, np.nan)
+        pixels = coordinates @ self.matrix[:2, :2].T + self.matrix[:2, 2]
         status = np.where(np.isnan(pixels[:, 0]), PointStatus.NO_PROJECTION, PointStatus.OK).astype(np.intp)
         return pixels, status
 
     def ray(self, pixels: Array) -> tuple[Array, Integers]:
-        place = np.linalg.solve(self.matrix[:2, :2], (pixels - self.matrix[:2, 2]).T).T
+        coordinates = np.linalg.solve(self.matrix[:2, :2], (pixels - self.matrix[:2, 2]).T).T
         directions = np.full((len(pixels), 3), np.nan)
-        inside = ((place >= 0) & (place <= 1)).all(axis=1)
-        directions[inside] = self._direction(place[inside])
+        inside = ((coordinates >= 0) & (coordinates <= 1)).all(axis=1)
+        directions[inside] = self._direction(coordinates[inside])
         status = np.where(np.isnan(directions[:, 0]), PointStatus.NO_PROJECTION, PointStatus.OK).astype(np.intp)
         return directions, status
 
     def transformed(self, matrix: Array) -> TextureModel:
         return replace(self, matrix=matrix @ self.matrix)
 
-    def _direction(self, place: Array) -> Array:
-        values, is_whole = _bilinear(self.directions, place, self.directions[:, :, 2] > -0.9999)
+    def _direction(self, coordinates: Array) -> Array:
+        values, is_whole = _bilinear(self.directions, coordinates, self.directions[:, :, 2] > -0.9999)
         length = np.linalg.norm(values, axis=1)
         is_whole &= length > 0
         return np.where(is_whole[:, None], values / np.where(length > 0, length, 1)[:, None], np.nan)
@@ -89,11 +89,12 @@ class TextureModel:
         """
         across, along = _basis(unit)
         texel = 1.0 / np.array([self.directions.shape[1], self.directions.shape[0]])
-        place, step = start.copy(), 1e-3 * texel
+        coordinates, step = start.copy(), 1e-3 * texel
         for _ in range(30):
-            residual = self._across(place, across, along)
+            residual = self._across(coordinates, across, along)
             columns = [
-                (self._across(place + h, across, along) - self._across(place - h, across, along)) / (2 * h.sum())
+                (self._across(coordinates + h, across, along) - self._across(coordinates - h, across, along))
+                / (2 * h.sum())
                 for h in (np.array([step[0], 0]), np.array([0, step[1]]))
             ]
             determinant = columns[0][:, 0] * columns[1][:, 1] - columns[1][:, 0] * columns[0][:, 1]
@@ -108,29 +109,29 @@ class TextureModel:
                     / (determinant[:, None])
                 )
             # A step of more than some texels leaves the cell for which the slopes are right.
-            place = place - np.clip(change, -4 * texel, 4 * texel)
+            coordinates = coordinates - np.clip(change, -4 * texel, 4 * texel)
         with np.errstate(invalid="ignore"):
-            is_solved = np.abs(self._across(place, across, along)).max(axis=1) < 1e-9
-            is_solved &= np.sum(self._direction(place) * unit, axis=1) > 0
-        return np.where(is_solved[:, None], place, start), is_solved
+            is_solved = np.abs(self._across(coordinates, across, along)).max(axis=1) < 1e-9
+            is_solved &= np.sum(self._direction(coordinates) * unit, axis=1) > 0
+        return np.where(is_solved[:, None], coordinates, start), is_solved
 
-    def _across(self, place: Array, across: Array, along: Array) -> Array:
-        direction = self._direction(place)
+    def _across(self, coordinates: Array, across: Array, along: Array) -> Array:
+        direction = self._direction(coordinates)
         return np.stack([np.sum(direction * across, axis=1), np.sum(direction * along, axis=1)], axis=1)
 
 
-def _bilinear(texture: Array, place: Array, is_set: Booleans) -> tuple[Array, Booleans]:
+def _bilinear(texture: Array, coordinates: Array, is_set: Booleans) -> tuple[Array, Booleans]:
     """Returns the means of the set texels about coordinates from 0 to 1, and True where all four are set.
 
     Weights are bilinear; beyond the centres of the outermost texels values are extrapolated.
     """
     height, width = texture.shape[:2]
-    position = np.nan_to_num(place) * [width, height] - 0.5
+    position = np.nan_to_num(coordinates) * [width, height] - 0.5
     cell = np.clip(np.floor(position), 0, [width - 2, height - 2]).astype(int)
     share = position - cell
-    values = np.zeros((len(place), texture.shape[2]))
-    total = np.zeros(len(place))
-    whole: Booleans = np.logical_and.reduce(np.isfinite(place), axis=1)
+    values = np.zeros((len(coordinates), texture.shape[2]))
+    total = np.zeros(len(coordinates))
+    whole: Booleans = np.logical_and.reduce(np.isfinite(coordinates), axis=1)
     for row in (0, 1):
         for column in (0, 1):
             x, y = cell[:, 0] + column, cell[:, 1] + row
@@ -158,8 +159,8 @@ def _to_octahedral(unit: Array) -> Array:
     return np.column_stack([np.where(z < 0, fold_x, x), np.where(z < 0, fold_y, y)])
 
 
-def _from_octahedral(place: Array) -> Array:
-    x, y = place.T
+def _from_octahedral(coordinates: Array) -> Array:
+    x, y = coordinates.T
     z = 1 - np.abs(x) - np.abs(y)
     fold_x, fold_y = (1 - np.abs(y)) * np.where(x < 0, -1, 1), (1 - np.abs(x)) * np.where(y < 0, -1, 1)
     directions = np.column_stack([np.where(z < 0, fold_x, x), np.where(z < 0, fold_y, y), z])
