@@ -13,7 +13,7 @@ import pytest
 
 from .measurement import write_run
 
-FOLDERS_OF_LAWS = {"architecture", "truth"}
+FOLDERS_OF_LAWS = {"architecture", "calibration", "truth"}
 # ruff: noqa: SIM905
 LAWS = frozenset(
     """

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import InputError
+from ..calibration.radial import RationalRadius
 
 Array = NDArray[np.float64]
 
@@ -41,10 +42,8 @@ class RadialModel:
 
     def radius(self, s: Array, coefficients: Array) -> Array:
         """Returns r(s)."""
-        top, bottom = self._polynomials(coefficients)
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-            values: Array = s * top(s) / bottom(s)
-        return values
+            return self._function(coefficients).value(s)
 
     def linear_terms(self, s: Array, r: Array) -> Array:
         """Returns the columns of the linear system for r: r is their sum weighted by f, f k_i and k_j."""
@@ -53,26 +52,17 @@ class RadialModel:
 
     def largest_angle(self, coefficients: Array) -> float:
         """Returns the largest angle in radians up to which r increases with the angle."""
-        top, bottom = self._polynomials(coefficients)
-        identity = np.polynomial.Polynomial([0, 1])
-        slope = (identity * top).deriv() * bottom - identity * top * bottom.deriv()
-        # Rounding may move a double root slightly off the real axis.
-        limits = [
-            root.real
-            for root in [*slope.roots(), *bottom.roots()]
-            if root.real > 0 and abs(root.imag) < 1e-9 * abs(root)
-        ]
-        if self.by_tangent:
-            return float(np.arctan(min(limits))) if limits else np.pi / 2
-        return float(min([*limits, np.pi]))
+        fold = self._function(coefficients).first_fold
+        return float(np.arctan(fold)) if self.by_tangent else min(fold, np.pi)
 
-    def _polynomials(self, coefficients: Array) -> tuple[np.polynomial.Polynomial, np.polynomial.Polynomial]:
+    def _function(self, coefficients: Array) -> RationalRadius:
         numerator = dict(zip(self.numerator, coefficients, strict=False))
         denominator = dict(zip(self.denominator, coefficients[len(self.numerator) :], strict=True))
-        return tuple(  # type: ignore[return-value]
-            np.polynomial.Polynomial([1.0, *(powers.get(k, 0.0) for k in range(1, max(powers, default=0) + 1))])
+        top, bottom = (
+            (1.0, *(float(powers.get(k, 0.0)) for k in range(1, max(powers, default=0) + 1)))
             for powers in (numerator, denominator)
         )
+        return RationalRadius(top, bottom)
 
 
 MODELS = {

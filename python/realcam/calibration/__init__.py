@@ -1,0 +1,8 @@
+"""Calibrations of cameras: twenty file formats, exact projection of points and rays of pixels."""
+
+from .calibration import Calibration
+from .errors import CalibrationFileError
+from .rectification import StereoRectification
+from .status import PointStatus
+
+__all__ = ["Calibration", "CalibrationFileError", "PointStatus", "StereoRectification"]

@@ -1,0 +1,179 @@
+"""A camera as its calibration describes it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .._core import InputError
+from . import opencv_models, rectification, resampling
+from .arrays import Array, Integers, picture_size, rows_of
+from .load import load
+from .model import shift
+from .stated_camera import StatedCamera
+from .status import PointStatus
+
+ORIGIN = 0.5  # of realcam: coordinate of the centre of the first pixel
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Calibration(StatedCamera):
+    """A calibrated camera: a central model that maps directions to pixels and back.
+
+    Pixels are realcam's: the centre of the first pixel is (0.5, 0.5), and rows increase downwards. Camera axes are
+    x right, y down, z forward.
+    Attributes: those of StatedCamera.
+    """
+
+    @staticmethod
+    def load(
+        path: str | os.PathLike[str],
+        camera: str | None = None,
+        format: str | None = None,
+        *,
+        size: tuple[int, int] | None = None,
+        crop_factor: float | None = None,
+    ) -> Calibration:
+        """Loads a calibration file; docs/calibration.md lists the formats.
+
+        camera: name of one of several cameras of the file. format: name of the format; None: found from the content,
+        then from the suffix. size: (width, height) in pixels, for formats that do not state it. crop_factor: of the
+        camera, for lensfun. Raises CalibrationFileError, InputError.
+        """
+        stated = load(path, camera, format, size=size, crop_factor=crop_factor)
+        return Calibration(**{entry.name: getattr(stated, entry.name) for entry in fields(stated)})
+
+    @staticmethod
+    def opencv(K: ArrayLike, D: ArrayLike, size: tuple[int, int]) -> Calibration:
+        """Returns the model of cv2.projectPoints with OpenCV's K, in which the first pixel's centre is (0, 0).
+
+        D: 0, 4, 5, 8, 12 or 14 coefficients in OpenCV's order. Raises InputError.
+        """
+        coefficients = _coefficients(D)
+        model = opencv_models.pinhole_model(shift(ORIGIN, ORIGIN) @ _matrix(K), coefficients)
+        return Calibration(model, size, f"opencv{len(coefficients)}", pixel_origin=0.0)
+
+    @staticmethod
+    def opencv_fisheye(K: ArrayLike, D: ArrayLike, size: tuple[int, int]) -> Calibration:
+        """Returns the model of cv2.fisheye with its K and k1 to k4; directions from 90 degrees on are refused."""
+        coefficients = _coefficients(D)
+        if len(coefficients) != 4:
+            raise InputError(f"the fisheye model has 4 coefficients, not {len(coefficients)}")
+        model = opencv_models.fisheye_model(shift(ORIGIN, ORIGIN) @ _matrix(K), coefficients)
+        return Calibration(model, size, "opencv_fisheye", pixel_origin=0.0)
+
+    @staticmethod
+    def pinhole(camera_matrix: ArrayLike, size: tuple[int, int]) -> Calibration:
+        """Returns a pinhole camera with K in realcam's pixel coordinates."""
+        return Calibration(opencv_models.pinhole_model(_matrix(camera_matrix)), size, "pinhole")
+
+    def __repr__(self) -> str:
+        name = f" {self.name!r:.60}" if self.name else ""
+        return (
+            f"<realcam.Calibration{name} {self.model}, {self.size[0]} x {self.size[1]} px, "
+            f"up to {self.largest_angle_deg:.4g} degrees>"
+        )
+
+    @property
+    def camera_matrix(self) -> Array:
+        """(3, 3) K of the pinhole camera that agrees with the model near the axis, in realcam's pixel coordinates."""
+        return self.camera_model.camera_matrix
+
+    @property
+    def largest_angle_deg(self) -> float:
+        """Angle to the axis up to which every direction has a pixel of its own."""
+        return float(np.degrees(self.camera_model.largest_angle))
+
+    def project(self, points: ArrayLike) -> tuple[Array, Integers]:
+        """Projects (N, 3) points in camera axes, metres.
+
+        Returns (N, 2) pixels, NaN if refused, and (N,) values of PointStatus. Points beyond a fold of the distortion
+        are refused. A fitted model without a fold is used up to one diagonal of the picture beyond its edges.
+        """
+        pixels, status = self.camera_model.project(rows_of(points, 3, "points"))
+        self._mark_outside(pixels, status)
+        pixels[status > PointStatus.OUTSIDE_PICTURE] = np.nan
+        return pixels, status
+
+    def ray(self, pixels: ArrayLike) -> tuple[Array, Integers]:
+        """Returns (N, 3) unit directions in camera axes of (N, 2) pixels, NaN if refused, and (N,) PointStatus."""
+        rows = rows_of(pixels, 2, "pixels")
+        directions, status = self.camera_model.ray(rows)
+        self._mark_outside(rows, status)
+        directions[status > PointStatus.OUTSIDE_PICTURE] = np.nan
+        return directions, status
+
+    def resized(self, size: tuple[int, int]) -> Calibration:
+        """Returns the calibration of the picture scaled to another size."""
+        width, height = picture_size(size)
+        scale = np.diag([width / self.size[0], height / self.size[1], 1.0])
+        return replace(self, camera_model=self.camera_model.transformed(scale), size=(width, height))
+
+    def cropped(self, left: int, top: int, width: int, height: int) -> Calibration:
+        """Returns the calibration of a part of the picture, whose first pixel is (left, top). Raises InputError."""
+        size = picture_size((width, height))
+        if left < 0 or top < 0 or left + size[0] > self.size[0] or top + size[1] > self.size[1]:
+            raise InputError(f"the part exceeds the picture of {self.size[0]} x {self.size[1]} pixels")
+        return replace(self, camera_model=self.camera_model.transformed(shift(-left, -top)), size=size)
+
+    def undistort(
+        self,
+        image: ArrayLike,
+        *,
+        camera_matrix: ArrayLike | None = None,
+        size: tuple[int, int] | None = None,
+        rotation: ArrayLike | None = None,
+        interpolation: str = "bilinear",
+    ) -> Array:
+        """Returns the picture that a pinhole camera would take, (H, W) or (H, W, C) doubles; NaN where there is none.
+
+        image: (H, W) or (H, W, C) of this calibration's size. camera_matrix, size: of the pinhole camera; default:
+        this camera's. rotation: (3, 3), from this camera's axes to the pinhole camera's. interpolation: "bilinear" or
+        "bicubic". Raises InputError.
+        """
+        matrix = self.camera_matrix if camera_matrix is None else _matrix(camera_matrix)
+        target = picture_size(self.size if size is None else size)
+        turn = np.eye(3) if rotation is None else _matrix(rotation, "rotation")
+        values = resampling.checked_image(image, self.size)
+        pixels = resampling.pixel_centres(target)
+        rays = np.column_stack([pixels, np.ones(len(pixels))]) @ (np.linalg.inv(matrix).T @ turn)
+        found, status = self.project(rays)
+        found[status != PointStatus.OK] = np.nan
+        sampled = resampling.sampled(values, found, interpolation)
+        return sampled.reshape(target[1], target[0], *values.shape[2:])
+
+    def stereo_rectification(self, other: Calibration, T: ArrayLike) -> rectification.StereoRectification:
+        """Returns rotations and projection matrices that align the rows of two pictures.
+
+        T: (4, 4), from this camera's axes to the other's, metres. Raises InputError.
+        """
+        return rectification.rectified(self.camera_matrix, other.camera_matrix, self.size, rows_of(T, 4, "T"))
+
+    def _mark_outside(self, pixels: Array, status: Integers) -> None:
+        """Replaces OK by OUTSIDE_PICTURE beside the picture, or by NO_PROJECTION where the model ends."""
+        with np.errstate(invalid="ignore"):
+            beyond = np.maximum(-pixels, pixels - np.array(self.size, dtype=float)).max(axis=1)
+        is_ok = status == PointStatus.OK
+        status[is_ok & (beyond > 0)] = PointStatus.OUTSIDE_PICTURE
+        if self.camera_model.is_extrapolated:
+            status[is_ok & (beyond > np.hypot(*self.size))] = PointStatus.NO_PROJECTION
+
+
+def _matrix(values: ArrayLike, name: str = "K") -> Array:
+    matrix = rows_of(values, 3, name)
+    if matrix.shape != (3, 3) or not np.isfinite(matrix).all() or not np.linalg.det(matrix):
+        raise InputError(f"{name} must be an invertible matrix of (3, 3) finite numbers")
+    if name == "K" and (tuple(matrix[2]) != (0, 0, 1)):
+        raise InputError("the last row of K must be (0, 0, 1)")
+    return matrix
+
+
+def _coefficients(values: ArrayLike) -> Sequence[float]:
+    coefficients = np.asarray(values, dtype=float).ravel()
+    if not np.isfinite(coefficients).all():
+        raise InputError("distortion coefficients must be finite numbers")
+    return [float(value) for value in coefficients]

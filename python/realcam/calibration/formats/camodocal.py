@@ -1,0 +1,73 @@
+"""Camera files of CamOdoCal, VINS and KITTI-360. First pixel: 0.
+
+Sources: CamOdoCal's camera_models; C. Mei and P. Rives, ICRA 2007. gamma is not a focal length: near the axis,
+f = gamma / (1 + xi).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..document import Document
+from ..entries import Entries
+from ..model import CentralModel, camera_matrix
+from ..opencv_models import fisheye_model, omnidirectional_model, pinhole_model
+from ..stated_camera import StatedCamera
+from .format import Cameras, Format, Options, sole
+
+
+def _matrix(entries: Entries, fx: str, fy: str, cx: str, cy: str) -> np.ndarray:
+    values = entries.child("projection_parameters")
+    return camera_matrix(values.positive(fx), values.positive(fy), values.number(cx) + 0.5, values.number(cy) + 0.5)
+
+
+def _distortion(entries: Entries) -> list[float]:
+    values = entries.child("distortion_parameters")
+    return [values.number(key) for key in ("k1", "k2", "p1", "p2")]
+
+
+def _mei(entries: Entries) -> CentralModel:
+    xi = entries.child("mirror_parameters").number("xi")
+    if xi < 0:
+        entries.child("mirror_parameters").fail("xi", "a number that is not negative")
+    return omnidirectional_model(_matrix(entries, "gamma1", "gamma2", "u0", "v0"), xi, _distortion(entries))
+
+
+def _pinhole(entries: Entries) -> CentralModel:
+    return pinhole_model(_matrix(entries, "fx", "fy", "cx", "cy"), _distortion(entries))
+
+
+def _kannala_brandt(entries: Entries) -> CentralModel:
+    values = entries.child("projection_parameters")
+    k = [values.number(key) for key in ("k2", "k3", "k4", "k5")]
+    return fisheye_model(_matrix(entries, "mu", "mv", "u0", "v0"), k, np.pi)
+
+
+MODELS: dict[str, Callable[[Entries], CentralModel]] = {
+    "MEI": _mei,
+    "PINHOLE": _pinhole,
+    "KANNALA_BRANDT": _kannala_brandt,
+}
+
+
+def _camera(entries: Entries) -> StatedCamera:
+    model = entries.choice("model_type", MODELS)
+    name = entries.values.get("camera_name")
+    return StatedCamera(
+        MODELS[model](entries),
+        entries.size("image_width", "image_height"),
+        model,
+        name=name if isinstance(name, str) else "",
+        format="camodocal",
+        pixel_origin=0.0,
+        file_values=dict(entries.values),
+    )
+
+
+def cameras(document: Document, options: Options) -> Cameras:
+    return sole("camera", lambda: _camera(Entries(document, document.mapping())))
+
+
+FORMAT = Format("camodocal", lambda d: "model_type" in d.mapping(), cameras)

@@ -1,0 +1,91 @@
+"""KITTI: calib_cam_to_cam.txt of raw data, and calibrations with P0 to P3. First pixel: 0.
+
+Source: A. Geiger, P. Lenz, C. Stiller and R. Urtasun, IJRR 32 (2013) 1231, and the readmes of the development kits.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from ..arrays import Array
+from ..document import Document
+from ..entries import Entries
+from ..model import shift
+from ..opencv_models import pinhole_model
+from ..stated_camera import StatedCamera
+from .format import Cameras, Format, Options, stated_size
+
+LINE = re.compile(r"^([A-Za-z]\w*):[ \t]*(.*)$", re.MULTILINE)
+PROJECTION = re.compile(r"P(\d+)|P_rect_(\d+)")
+
+
+def _entries(document: Document) -> Entries:
+    return Entries(document, dict(LINE.findall(document.text)))
+
+
+def _raw(entries: Entries, number: str) -> StatedCamera:
+    """Returns the camera before rectification."""
+    matrix = entries.matrix(f"K_{number}", 3, 3)
+    D = entries.numbers(f"D_{number}", 5)
+    extrinsics = {}
+    if f"R_{number}" in entries and f"T_{number}" in entries:
+        pose = _transform(entries.matrix(f"R_{number}", 3, 3), entries.matrix(f"T_{number}", 3, 1)[:, 0])
+        extrinsics["camera_from_camera0"] = pose
+    if f"R_rect_{number}" in entries:
+        extrinsics["rectified_from_camera"] = _transform(entries.matrix(f"R_rect_{number}", 3, 3), np.zeros(3))
+    return StatedCamera(
+        pinhole_model(shift(0.5, 0.5) @ matrix, D),
+        entries.size(f"S_{number}"),
+        "opencv5",
+        name=number,
+        format="kitti",
+        pixel_origin=0.0,
+        extrinsics=extrinsics,
+        file_values={"K": matrix, "D": D},
+    )
+
+
+def _rectified(entries: Entries, key: str, options: Options) -> StatedCamera:
+    """Returns a rectified camera. The last column of P is K times the position of rectified camera 0 in its axes."""
+    P = entries.matrix(key, 3, 4)
+    K = P[:, :3]
+    if K[2].tolist() != [0, 0, 1] or K[0, 0] <= 0 or K[1, 1] <= 0:
+        entries.fail(key, "a projection matrix with positive focal lengths and the last row 0 0 1 tz")
+    size_key = f"S_{key[2:]}"  # S_rect_02 of P_rect_02
+    size = entries.size(size_key) if size_key in entries else stated_size(entries.document, options)
+    return StatedCamera(
+        pinhole_model(shift(0.5, 0.5) @ K),
+        size,
+        "pinhole",
+        name=key,
+        format="kitti",
+        pixel_origin=0.0,
+        extrinsics={"camera_from_rectified_camera0": _transform(np.eye(3), np.linalg.solve(K, P[:, 3]))},
+        file_values={"P": P},
+    )
+
+
+def _transform(rotation: Array, translation: Array) -> Array:
+    transform = np.eye(4)
+    transform[:3, :3], transform[:3, 3] = rotation, translation
+    return transform
+
+
+def cameras(document: Document, options: Options) -> Cameras:
+    entries = _entries(document)
+    raw = {key[2:]: lambda key=key: _raw(entries, key[2:]) for key in entries.values if re.fullmatch(r"K_\d+", key)}
+    rectified = {
+        key: lambda key=key: _rectified(entries, key, options) for key in entries.values if PROJECTION.fullmatch(key)
+    }
+    return {**raw, **rectified}
+
+
+def _matches(document: Document) -> bool:
+    if document.syntax not in ("yaml", "text"):
+        return False
+    return any(re.fullmatch(r"K_\d+|P\d+|P_rect_\d+", key) for key, _ in LINE.findall(document.text))
+
+
+FORMAT = Format("kitti", _matches, cameras)

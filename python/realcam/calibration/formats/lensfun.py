@@ -1,0 +1,101 @@
+"""Distortion models of lensfun's database: ptlens, poly3 and poly5. First pixel: 0.
+
+Source: lensfun 0.3, libs/lensfun/mod-coord.cpp: the undistorted distance of a pixel from the centre is 1 at
+hypot(W - 1, H - 1) / 2 / sqrt(aspect_ratio^2 + 1) * crop_camera / crop_lens pixels. Undistorted pictures are those of a
+pinhole camera with the nominal focal length.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from typing import NamedTuple
+
+import numpy as np
+
+from ..distortion import BrownConrady
+from ..document import Document
+from ..entries import Entries, element_entries
+from ..model import CentralModel, camera_matrix
+from ..projections import Perspective
+from ..radial import RationalRadius
+from ..stated_camera import StatedCamera
+from .format import Cameras, Format, Options, stated_size
+
+DIAGONAL_MM = float(np.hypot(36, 24))  # of a film with crop factor 1
+
+
+class _Lens(NamedTuple):
+    """A lens with one of its calibrated focal lengths."""
+
+    entries: Entries
+    distortion: Entries
+    focal_length_mm: float
+
+
+def _factor(entries: Entries) -> tuple[float, ...]:
+    """Returns the coefficients of the distorted distance over the undistorted one, by ascending powers."""
+    model = entries.choice("model", ("ptlens", "poly3", "poly5"))
+    if model == "ptlens":
+        a, b, c = (entries.number(key, 0.0) for key in "abc")
+        return 1 - a - b - c, c, b, a
+    k1, k2 = entries.number("k1", 0.0), entries.number("k2", 0.0)
+    return (1 - k1, 0.0, k1) if model == "poly3" else (1.0, 0.0, k1, 0.0, k2)
+
+
+def _aspect_ratio(entries: Entries) -> float:
+    """Returns the ratio of width and height of the pictures that the lens was calibrated with."""
+    if "aspect-ratio" not in entries:
+        return 1.5
+    width, _, height = entries.text("aspect-ratio").partition(":")
+    parts = Entries(entries.document, {"aspect-ratio": width, "height": height or "1"}, entries.where)
+    return parts.positive("aspect-ratio") / parts.positive("height")
+
+
+def _camera(lens: _Lens, name: str, options: Options) -> StatedCamera:
+    size = stated_size(lens.entries.document, options)
+    lens_crop = lens.entries.positive("cropfactor") if "cropfactor" in lens.entries else 1.0
+    crop = options.crop_factor or lens_crop
+    diagonal = float(np.hypot(size[0] - 1, size[1] - 1))
+    unit = diagonal / 2 / float(np.hypot(_aspect_ratio(lens.entries), 1)) * crop / lens_crop
+    focal = lens.focal_length_mm / (DIAGONAL_MM / crop) * diagonal
+    # The polynomial is a function of the tangent times this ratio.
+    ratio = focal / unit
+    factor = tuple(value * ratio**power for power, value in enumerate(_factor(lens.distortion)))
+    if factor[0] <= 0:
+        lens.distortion.fail("model", "a factor that is positive in the centre of the picture")
+    model = CentralModel(
+        Perspective(), BrownConrady(RationalRadius(factor)), camera_matrix(focal, focal, size[0] / 2, size[1] / 2)
+    )
+    stated = dict(lens.distortion.values)
+    return StatedCamera(
+        model, size, lens.distortion.text("model"), name=name, format="lensfun", pixel_origin=0.0, file_values=stated
+    )
+
+
+def _lenses(document: Document) -> dict[str, _Lens]:
+    """Returns the lenses by their model, with the focal length if there are several."""
+    found: dict[str, _Lens] = {}
+    for element in document.xml.iter("lens"):
+        entries = element_entries(document, element)
+        distortions = [element_entries(document, d) for d in element.iterfind("calibration/distortion")]
+        for distortion in distortions:
+            focal = distortion.positive("focal")
+            name = entries.text("model")
+            found[f"{name} @ {focal:g} mm" if distortions[1:] else name] = _Lens(entries, distortion, focal)
+    return found
+
+
+def cameras(document: Document, options: Options) -> Cameras:
+    if options.crop_factor is not None and not 0.01 <= options.crop_factor <= 100:
+        document.fail(f"crop_factor is {options.crop_factor}; expected a number from 0.01 to 100")
+    return {
+        name: lambda lens=lens, name=name: _camera(lens, name, options)  # type: ignore[misc]
+        for name, lens in _lenses(document).items()
+    }
+
+
+def _is_database(root: ET.Element) -> bool:
+    return root.tag == "lensdatabase"
+
+
+FORMAT = Format("lensfun", lambda d: d.syntax == "xml" and _is_database(d.xml), cameras)

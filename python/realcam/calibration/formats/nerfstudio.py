@@ -1,0 +1,87 @@
+"""transforms.json of nerfstudio and instant-ngp. First pixel: 0.5.
+
+Source: nerfstudio's documentation, "Data conventions", and cameras/camera_utils.py: the factor of OPENCV is
+1 + k1 r^2 + k2 r^4 + k3 r^6 + k4 r^8, in which k4 is no coefficient of a denominator.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..distortion import BrownConrady
+from ..document import Document
+from ..entries import Entries
+from ..model import CentralModel, camera_matrix
+from ..opencv_models import fisheye_model
+from ..projections import Perspective
+from ..radial import RationalRadius, even_powers
+from ..stated_camera import StatedCamera
+from .format import Cameras, Format, Options, sole, unknown_model
+
+PERSPECTIVE = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE")
+FISHEYE = "OPENCV_FISHEYE"
+FOCAL_KEYS = ("fl_x", "camera_angle_x")
+
+
+def _focal_length(entries: Entries, axis: str, side: int) -> float | None:
+    """Returns fl_x or fl_y in pixels, which may be stated by the angle of view; None if neither is stated."""
+    if f"fl_{axis}" in entries:
+        return entries.positive(f"fl_{axis}")
+    key = f"camera_angle_{axis}"
+    if key not in entries:
+        return None
+    if not 0 < entries.number(key) < np.pi:
+        entries.fail(key, "an angle in radians between 0 and pi")
+    return float(side / 2 / np.tan(entries.number(key) / 2))
+
+
+def _model(entries: Entries, size: tuple[int, int]) -> tuple[CentralModel, str]:
+    fx = _focal_length(entries, "x", size[0])
+    if fx is None:
+        entries.fail("fl_x", "a focal length in pixels")
+    fy = _focal_length(entries, "y", size[1]) or fx
+    matrix = camera_matrix(fx, fy, entries.number("cx", size[0] / 2), entries.number("cy", size[1] / 2))
+    name = entries.text("camera_model", FISHEYE if entries.values.get("is_fisheye") is True else "OPENCV")
+    k = [entries.number(f"k{i}", 0.0) for i in range(1, 5)]
+    if name == FISHEYE:
+        return fisheye_model(matrix, k), name
+    if name not in PERSPECTIVE:
+        unknown_model(entries.document, f"{entries.where}camera_model", name, dict.fromkeys((*PERSPECTIVE, FISHEYE)))
+    tangential = (entries.number("p1", 0.0), entries.number("p2", 0.0))
+    return CentralModel(Perspective(), BrownConrady(RationalRadius(even_powers(k)), tangential), matrix), name
+
+
+def _camera(entries: Entries, name: str) -> StatedCamera:
+    size = entries.size("w", "h")
+    model, model_name = _model(entries, size)
+    stated = {key: value for key, value in entries.values.items() if key not in ("frames", "transform_matrix")}
+    return StatedCamera(model, size, model_name, name=name, format="nerfstudio", file_values=stated)
+
+
+def _has_focal_length(values: object) -> bool:
+    return isinstance(values, dict) and any(key in values for key in FOCAL_KEYS)
+
+
+def cameras(document: Document, options: Options) -> Cameras:
+    data = document.mapping()
+    whole = Entries(document, data)
+    own = [frame for frame in whole.children("frames") if _has_focal_length(frame.values)] if "frames" in data else []
+    if _has_focal_length(data) or not own:
+        return sole("camera", lambda: _camera(whole, ""))
+    # A frame inherits what it does not state.
+    return {
+        frame.text("file_path"): lambda frame=frame: _camera(  # type: ignore[misc]
+            Entries(document, {**data, **frame.values}, frame.where), frame.text("file_path")
+        )
+        for frame in own
+    }
+
+
+def _matches(document: Document) -> bool:
+    data = document.mapping()
+    frames = data.get("frames")
+    first = frames[0] if isinstance(frames, list) and frames else None
+    return _has_focal_length(data) or _has_focal_length(first)
+
+
+FORMAT = Format("nerfstudio", _matches, cameras)

@@ -1,0 +1,87 @@
+"""OCamCalib: calib_results.txt. First pixel: 0.
+
+Source: D. Scaramuzza, A. Martinelli and R. Siegwart, ICVS 2006, and the toolbox's ocam_functions.c. The toolbox's axes
+are x down the rows, y along the columns, z backwards. world2cam, the polynomial invpol, is the model; pol is no exact
+inverse of it, and states the range of angles for which invpol was fitted.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from ..distortion import BrownConrady
+from ..document import Document
+from ..entries import Entries
+from ..model import CentralModel
+from ..ocam_projection import InversePolynomial
+from ..stated_camera import StatedCamera
+from .format import Cameras, Format, Options, sole
+
+KEYS = ("pol", "invpol", "centre", "affine", "size")  # in the order of the file
+AGREEMENT = 0.1  # pixels, within which invpol is the inverse of pol in the range for which it was fitted
+
+
+def _entries(document: Document) -> Entries:
+    lines = [line.strip() for line in document.text.splitlines()]
+    rows = [line for line in lines if line and not line.startswith("#")]
+    if len(rows) != len(KEYS):
+        document.fail(f"expected {len(KEYS)} lines of numbers ({', '.join(KEYS)}); found {len(rows)}")
+    return Entries(document, dict(zip(KEYS, rows, strict=True)))
+
+
+def _polynomial(entries: Entries, key: str) -> list[float]:
+    """Returns the coefficients of a line that starts with their number."""
+    count, *coefficients = entries.numbers(key)
+    if count != len(coefficients) or not 1 <= count <= 64:
+        entries.fail(key, "the number of coefficients (1 to 64) and as many coefficients")
+    return coefficients
+
+
+def _largest_angle(pol: list[float], invpol: list[float]) -> float:
+    """Returns the angle up to which invpol agrees with pol, whose z is negative in front, and grows."""
+    angles = np.linspace(0, np.pi, 3601)
+    distances, slopes = (f(angles - np.pi / 2) for f in (Polynomial(invpol), Polynomial(invpol).deriv()))
+    error = (np.arctan2(distances, -Polynomial(pol)(distances)) - angles) * slopes
+    is_wrong = (np.abs(error) > AGREEMENT) | (slopes <= 0)
+    return float(angles[np.argmax(is_wrong)]) if is_wrong.any() else np.pi
+
+
+def _camera(document: Document) -> StatedCamera:
+    entries = _entries(document)
+    pol, invpol = _polynomial(entries, "pol"), _polynomial(entries, "invpol")
+    row, column = entries.numbers("centre", 2)
+    c, d, e = entries.numbers("affine", 3)
+    if c <= d * e:
+        entries.fail("affine", "c, d, e with c - d e above 0")
+    height, width = entries.numbers("size", 2)
+    size = Entries(document, {"size": [width, height]}).size("size")
+    # (row, column) = [c d; e 1] (x, y); with columns first, [1 e; d c].
+    matrix = np.array([[1.0, e, column + 0.5], [d, c, row + 0.5], [0.0, 0.0, 1.0]])
+    limit = _largest_angle(pol, invpol)
+    if not limit:
+        entries.fail("invpol", "the inverse of pol")
+    projection = InversePolynomial(tuple(invpol), limit)
+    return StatedCamera(
+        CentralModel(projection, BrownConrady(), matrix),
+        size,
+        "ocam",
+        format="ocam",
+        pixel_origin=0.0,
+        file_values=dict(entries.values),
+    )
+
+
+def _matches(document: Document) -> bool:
+    return document.syntax in ("text", "yaml") and bool(
+        re.search(r"^#.*\binvpol\b|ocam_model", document.text, re.MULTILINE)
+    )
+
+
+def cameras(document: Document, options: Options) -> Cameras:
+    return sole("camera", lambda: _camera(document))
+
+
+FORMAT = Format("ocam", _matches, cameras)

@@ -1,0 +1,64 @@
+"""Loading of calibration files: the format is found, the camera chosen, and the stated size checked."""
+
+from __future__ import annotations
+
+import os
+
+from .._core import InputError
+from .arrays import picture_size
+from .document import Document
+from .errors import CalibrationFileError
+from .formats import FORMATS
+from .formats.format import Format, Options
+from .stated_camera import StatedCamera
+
+
+def load(
+    path: str | os.PathLike[str],
+    camera: str | None = None,
+    format: str | None = None,
+    *,
+    size: tuple[int, int] | None = None,
+    crop_factor: float | None = None,
+) -> StatedCamera:
+    """See Calibration.load."""
+    options = Options(None if size is None else picture_size(size), crop_factor)
+    document = Document(path)
+    found = _format_named(format) if format is not None else _format_of(document)
+    cameras = found.cameras(document, options)
+    calibration = cameras[_chosen(document, list(cameras), camera)]()
+    if options.size is not None and calibration.size != options.size:
+        raise InputError(
+            f"{document.path}: states a picture of {calibration.size[0]} x {calibration.size[1]} pixels, not "
+            f"{options.size[0]} x {options.size[1]}; Calibration.resized converts it"
+        )
+    return calibration
+
+
+def _format_named(name: str) -> Format:
+    for known in FORMATS:
+        if known.name == name:
+            return known
+    raise InputError(f'unknown format "{name!s:.40}"; expected one of {", ".join(f.name for f in FORMATS)}')
+
+
+def _format_of(document: Document) -> Format:
+    matching = [known for known in FORMATS if known.matches(document)]
+    if matching:
+        return matching[0]
+    raise CalibrationFileError(
+        f"{document.path}: no known calibration format; expected one of {', '.join(f.name for f in FORMATS)}"
+    )
+
+
+def _chosen(document: Document, names: list[str], camera: str | None) -> str:
+    shown = ", ".join(f'"{name:.40}"' for name in names[:12]) + (", ..." if names[12:] else "")
+    if not names:
+        document.fail("holds no camera")
+    if camera is None:
+        if len(names) > 1:
+            document.fail(f"holds {len(names)} cameras; camera must be one of {shown}")
+        return names[0]
+    if camera not in names:
+        document.fail(f'holds no camera "{camera!s:.40}"; expected {"one of " if names[1:] else ""}{shown}')
+    return camera

@@ -1,0 +1,33 @@
+"""A camera as a calibration file states it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from .arrays import Array, picture_size
+from .model import CameraModel
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StatedCamera:
+    """What the readers of all formats return.
+
+    camera_model: the equations, in realcam's pixels. size: (width, height) in pixels. model: name of the model in its
+    file format. name: of the camera in its file. format: of the file; empty for a camera that was not loaded.
+    pixel_origin: coordinate of the centre of the first pixel in the file's own convention. extrinsics: (4, 4) rigid
+    transforms, metres, under names such as "camera_from_imu". file_values: parameters as the file states them.
+    """
+
+    camera_model: CameraModel
+    size: tuple[int, int]
+    model: str
+    name: str = ""
+    format: str = ""
+    pixel_origin: float = 0.5
+    extrinsics: Mapping[str, Array] = field(default_factory=dict)
+    file_values: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "size", picture_size(self.size))

@@ -1,0 +1,67 @@
+"""Distortions that are given by their inverse: a polynomial from distorted to ideal points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .arrays import Array, Booleans
+from .folds import Folds
+from .plane_inverse import plane_inverse
+
+STEP = 1e-30  # of the complex step, whose derivatives have no rounding error
+
+
+@dataclass(frozen=True)
+class Undistortion:
+    """The inverse of an analytic map of the plane that keeps the centre.
+
+    function: ideal points of (N, 2) distorted ones, which may be complex. ratio: of its unit and that of ideal points.
+    """
+
+    function: Callable[[Array], Array]
+    ratio: float
+
+    @property
+    def scale(self) -> float:
+        return self.ratio / float(np.sqrt(np.abs(np.linalg.det(self._jacobian(np.zeros((1, 2)))[0]))))
+
+    def is_before_fold(self, points: Array, largest: float) -> Booleans:
+        found = self._distorted(points)
+        before: Booleans = np.logical_and.reduce(np.isfinite(found), axis=1)
+        before[before] = self._folds.is_before(found[before])
+        return before
+
+    def first_fold(self, largest: float) -> float:
+        azimuths = np.linspace(0, 2 * np.pi, 256, endpoint=False)
+        limits = self._folds.limit(azimuths)
+        reached = np.isfinite(limits)
+        if not reached.any():
+            return np.inf
+        ends = np.column_stack([np.cos(azimuths), np.sin(azimuths)])[reached] * limits[reached, None]
+        return float(np.hypot(*self.function(ends).T).min()) / self.ratio
+
+    def distorted(self, points: Array) -> Array:
+        return self._distorted(points)
+
+    def ideal(self, points: Array, largest: float) -> Array:
+        found: Array = self.function(points) / self.ratio
+        with np.errstate(invalid="ignore"):
+            is_hidden = ~self._folds.is_before(np.nan_to_num(points)) | ~(np.hypot(*found.T) < largest)
+        found[is_hidden] = np.nan
+        return found
+
+    def _distorted(self, points: Array) -> Array:
+        start = points * self.ratio
+        return plane_inverse(self.function, self._jacobian, start, start)
+
+    def _jacobian(self, points: Array) -> Array:
+        columns = [self.function(points + 1j * STEP * axis).imag / STEP for axis in np.eye(2)]
+        return np.stack(columns, axis=2)
+
+    @cached_property
+    def _folds(self) -> Folds:
+        return Folds(self.function, self._jacobian, np.inf)
