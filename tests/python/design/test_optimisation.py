@@ -107,7 +107,11 @@ FRONT = [rc.Variable.radius(0)]
         (FRONT, {"operands": [rc.Operand("blur")]}, 'unknown operand "blur"'),
         (FRONT, {"operands": [rc.Operand("length_mm", bound="about")]}, "equal, least or most"),
         (FRONT, {"operands": [rc.Operand("length_mm", weight=0)]}, "positive weight"),
-        (FRONT, {"operands": [rc.Operand("edge_thickness_mm", surface=6)]}, "surface 7 is the last and has no thickness"),
+        (
+            FRONT,
+            {"operands": [rc.Operand("edge_thickness_mm", surface=6)]},
+            "surface 7 is the last and has",
+        ),
         (
             FRONT,
             {"operands": [rc.Operand("centre_thickness_mm", surface=99)]},
