@@ -1,7 +1,7 @@
 """Compares patents' lenses with products that photographers have measured: tables and plots of docs/photographs.md.
 
-    python benchmarks/photographs.py                                        # tables, as Markdown
-    python benchmarks/photographs.py --plots docs/images/photographs.svg    # and the plots
+    python benchmarks/photographs.py                      # tables, as Markdown
+    python benchmarks/photographs.py --plots docs/images  # and photographs-distortion.png, photographs-others.png
 
 The measurements are those of lensfun's contributors; tests/python/photographs/products.toml has the coefficients.
 """
@@ -143,10 +143,11 @@ class Comparison:
     """The patent's lens beside the product.
 
     radius_mm: (N,), heights on the film by the patent's lens in green; patent_percent, product_percent: (N,), their
-    distortion relative to one ideal lens. distortion_um: rms over the frame of the difference of heights, after one scale;
-    ideal_um: the same for a lens without distortion in the patent's place.
-    colour_um: rms over the frame of the differences of red and blue, relative to green; none_um: the same for a lens
-    without lateral colour. None if lensfun has no lateral colour.
+    distortion relative to one ideal lens. distortion_um: rms over the frame of the difference of heights, after one
+    scale; ideal_um: the same for a lens without distortion in the patent's place.
+    red_um, blue_um: rms over the frame of the differences of lateral colour, relative to green; plain_red_um: that of
+    red for a lens without lateral colour. None if lensfun has no lateral colour.
+    edge_red_um: lateral colour of red at 85% of the largest height: the patent's lens and the product.
     covered_mm: largest height that was compared; half the frame's diagonal unless the patent's light ends before.
     """
 
@@ -157,8 +158,10 @@ class Comparison:
     product_percent: Doubles
     distortion_um: float
     ideal_um: float
-    colour_um: float | None
-    none_um: float | None
+    red_um: float | None
+    blue_um: float | None
+    plain_red_um: float | None
+    edge_red_um: tuple[float, float] | None
     falloff: tuple[Falloff, ...]
     covered_mm: float
 
@@ -215,7 +218,7 @@ def compare_falloff(lens: rc.Lens, entry: Entry) -> tuple[Falloff, ...]:
     return tuple(found)
 
 
-def compare(entry: Entry) -> Comparison:
+def compare(entry: Entry, *, with_falloff: bool = True) -> Comparison:
     lens = load_lens(entry)
     rays = chief_rays(lens)
     crop = entry["crop"]
@@ -230,12 +233,20 @@ def compare(entry: Entry) -> Comparison:
     paraxial = rays.green_mm[1] / rays.tangents[1]
     shown = rays.tangents[1:]
     product_shown = measured_height_mm(shown, entry["distortion"], crop, focal)
-    colour = none = None
+    red = blue = plain = edge = None
     if "colour" in entry:
         photographed = [measured_colour_mm(radius, entry["colour"], crop, channel) for channel in "rb"]
-        traced = [np.interp(radius, rays.green_mm, other - rays.green_mm) for other in (rays.red_mm, rays.blue_mm)]
-        colour = 1e3 * rms(np.concatenate(photographed) - np.concatenate(traced))
-        none = 1e3 * rms(np.concatenate(photographed))
+        shifts = [other - rays.green_mm for other in (rays.red_mm, rays.blue_mm)]
+        red, blue = (
+            1e3 * rms(measured - np.interp(radius, rays.green_mm, shift))
+            for measured, shift in zip(photographed, shifts, strict=True)
+        )
+        plain = 1e3 * rms(photographed[0])
+        place = np.array([0.85 * rays.green_mm.max()])
+        edge = (
+            1e3 * float(np.interp(place[0], rays.green_mm, shifts[0])),
+            1e3 * float(measured_colour_mm(place, entry["colour"], crop, "r")[0]),
+        )
     return Comparison(
         entry,
         float(lens.first_order().effective_focal_length_mm),
@@ -244,9 +255,11 @@ def compare(entry: Entry) -> Comparison:
         100 * (product_shown / (paraxial * shown) - 1),
         1e3 * rms(difference),
         1e3 * rms(product - proportion * tangent),
-        colour,
-        none,
-        compare_falloff(lens, entry),
+        red,
+        blue,
+        plain,
+        edge,
+        compare_falloff(lens, entry) if with_falloff else (),
         float(rays.green_mm.max()),
     )
 
@@ -290,3 +303,120 @@ def _after_scale(
 
     focal = fitted_scale(difference, start_mm)
     return focal, difference(focal)
+
+
+def name_of(entry: Entry) -> str:
+    return entry["product"] + (f", {entry['zoom'].removesuffix('mm')} mm" if "zoom" in entry else "")
+
+
+def _marked(value: float | None, bound: float, digits: int) -> str:
+    """The figure, in bold if it exceeds the bound."""
+    if value is None:
+        return ""
+    text = f"{value:.{digits}f}"
+    return f"**{text}**" if value > bound else text
+
+
+def product_table(comparisons: Sequence[Comparison]) -> str:
+    lines = [
+        "| product | patent | contributor's camera | distortion / µm | no distortion / µm | red / µm | blue / µm "
+        "| no colour / µm | falloff / stops |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    for c in comparisons:
+        falloff = ", ".join(f"f/{f.f_number:g}: {_marked(f.rms_stops, FALLOFF_BOUND_STOPS, 2)}" for f in c.falloff)
+        cells = [
+            name_of(c.entry).replace("|", "-"),
+            c.entry["patent"],
+            c.entry["camera"],
+            _marked(c.distortion_um, DISTORTION_BOUND_UM, 1),
+            f"{c.ideal_um:.0f}",
+            _marked(c.red_um, COLOUR_BOUND_UM, 1),
+            _marked(c.blue_um, COLOUR_BOUND_UM, 1),
+            "" if c.plain_red_um is None else f"{c.plain_red_um:.1f}",
+            falloff,
+        ]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def scatter_table(found: Scatter) -> str:
+    lines = [
+        "| contributors differ by | pairs | half of them less than | 90% less than | at most |",
+        "|---|---|---|---|---|",
+    ]
+    for what, values, digits in (
+        ("distortion / µm", found.distortion_um, 1),
+        ("lateral colour / µm", found.colour_um, 1),
+        ("falloff / stops", found.falloff_stops, 3),
+    ):
+        half, most = np.quantile(values, [0.5, 0.9])
+        lines.append(f"| {what} | {len(values)} | {half:.{digits}f} | {most:.{digits}f} | {values.max():.{digits}f} |")
+    return "\n".join(lines)
+
+
+def save_distortion_plot(comparisons: Sequence[Comparison], path: Path) -> None:
+    columns = 5
+    rows = math.ceil(len(comparisons) / columns)
+    figure = matplotlib.figure.Figure(figsize=(12, 1.75 * rows), layout="constrained")
+    panels = figure.subplots(rows, columns, squeeze=False, sharex=True).ravel()
+    for panel in panels[len(comparisons) :]:
+        panel.axis("off")
+    for panel, c in zip(panels, comparisons, strict=False):
+        panel.plot(c.radius_mm, c.patent_percent, color="#1f77b4", label="patent")
+        panel.plot(c.radius_mm, c.product_percent, "--", color="#d62728", label="product")
+        panel.set_title(name_of(c.entry)[:40], fontsize=7)
+        panel.tick_params(labelsize=7)
+        low, high = panel.get_ylim()
+        middle = 0.5 * (low + high)
+        half = max(0.5 * (high - low), 0.75)
+        panel.set_ylim(middle - half, middle + half)
+    panels[0].legend(fontsize=7)
+    figure.supxlabel("height on the film / mm", fontsize=9)
+    figure.supylabel("distortion / %", fontsize=9)
+    figure.savefig(path, dpi=75)
+
+
+def save_other_plot(comparisons: Sequence[Comparison], path: Path) -> None:
+    figure = matplotlib.figure.Figure(figsize=(10, 4.6), layout="constrained")
+    colour, falloff = figure.subplots(1, 2)
+    edges = [c.edge_red_um for c in comparisons if c.edge_red_um is not None]
+    colour.plot(*zip(*edges, strict=True), "o", color="#d62728", markersize=4)
+    colour.set_xlabel("patent / µm")
+    colour.set_ylabel("product / µm")
+    colour.set_title("Red relative to green, at 85% of the half diagonal")
+    for k, (label, shade) in enumerate((("wide open", "#1f77b4"), ("two stops down, or about", "#ff7f0e"))):
+        pairs = [
+            (math.log2(c.falloff[k].patent[-2]), math.log2(c.falloff[k].product[-2]))
+            for c in comparisons
+            if len(c.falloff) > k
+        ]
+        falloff.plot(*zip(*pairs, strict=True), "o", color=shade, markersize=4, label=label)
+    falloff.set_xlabel("patent / stops")
+    falloff.set_ylabel("product / stops")
+    falloff.set_title("Falloff close to the corner")
+    for axes in (colour, falloff):
+        low = min(axes.get_xlim()[0], axes.get_ylim()[0])
+        high = max(axes.get_xlim()[1], axes.get_ylim()[1])
+        axes.plot([low, high], [low, high], color="0.6", linewidth=0.8, zorder=0)
+        axes.grid(alpha=0.3)
+    falloff.legend()
+    figure.savefig(path, dpi=75)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--plots", type=Path, help="folder for the plots")
+    options = parser.parse_args()
+    table = load_table()
+    print(scatter_table(scatter(table["repeated"])))
+    print(f"\nBounds: {DISTORTION_BOUND_UM:g} um, {COLOUR_BOUND_UM:g} um, {FALLOFF_BOUND_STOPS:g} stops\n", flush=True)
+    comparisons = [compare(entry) for entry in table["product"]]
+    print(product_table(comparisons), flush=True)
+    if options.plots:
+        save_distortion_plot(comparisons, options.plots / "photographs-distortion.png")
+        save_other_plot(comparisons, options.plots / "photographs-others.png")
+
+
+if __name__ == "__main__":
+    main()
