@@ -39,7 +39,8 @@ RED_NM, GREEN_NM, BLUE_NM = 600.0, 540.0, 460.0
 # Bounds of the comparison, fixed before any of the lenses of tests/python/photographs/lenses was traced. Each is the
 # 90th percentile of the differences between two contributors (see `scatter`) plus a tolerance of production.
 # Distortion and colour: the 95th percentile of copies of the Summicron with errors of the grade "precision" in radii
-# (0.1%), thicknesses (0.05 mm) and glasses (0.0005, 0.5%) is 2.9 um and 1.3 um, here rounded up.
+# (0.1%), thicknesses (0.05 mm) and glasses (0.0005, 0.5%) is 2.9 um and 1.3 um, here rounded up. Other lenses vary
+# more: docs/photographs.md.
 # Falloff: 0.1 stop is assumed for rims and diaphragms.
 SCATTER_UM, PRODUCTION_UM = 20.5, 3.0
 SCATTER_COLOUR_UM, PRODUCTION_COLOUR_UM = 2.4, 1.5
