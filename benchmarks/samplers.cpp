@@ -36,7 +36,7 @@ struct Place {
     std::uint32_t pixel, column, row, sample, samples, seed;
 };
 
-/// What the renderer takes.
+/// The renderer's sampler.
 struct Joint {
     static constexpr const char* name = "joint";
     static Point at(const Place& place) {
@@ -133,10 +133,10 @@ struct Sevens {
     }
 };
 
-/// A (0, 2^kBits)-sequence in that base, of which every dimension is a binary matrix: Faure's construction over a field
-/// of 2^kBits elements (A. Ahmed, M. Skopenkov, M. Hadwiger and P. Wonka, "SZ Sequences: Binary-Constructed
-/// (0, 2^q)-Sequences", SIGGRAPH Asia 2024). Digit i of a number is the sum over the index's digits j of
-/// binomial(j, i) a^(j - i), where each dimension has an element a of its own.
+/// Generator matrix of one dimension of a (0, 2^kBits)-sequence in base 2^kBits, as a binary matrix: Faure's
+/// construction over a field of 2^kBits elements (A. Ahmed, M. Skopenkov, M. Hadwiger and P. Wonka, "SZ Sequences:
+/// Binary-Constructed (0, 2^q)-Sequences", SIGGRAPH Asia 2024). Digit i of a sample is the sum over the index's digits
+/// j of binomial(j, i) a^(j - i) times digit j, with a different element a in each dimension.
 template <int kBits, unsigned kModulus>
 class FieldMatrix {
 public:

@@ -63,7 +63,7 @@ def main() -> None:
         exposure_time_s=2,
     )
     exposure = photograph(scene, integrator, camera, arguments.spp)
-    # As on a camera, 10 / ISO lux seconds become a middle grey of 18%.
+    # The exposure scale of a camera: 10 / ISO lux seconds become a middle grey of 18%.
     mi.util.write_bitmap(arguments.output, exposure * np.float32(0.018 * camera.iso), write_async=False)
 
 
