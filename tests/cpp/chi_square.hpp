@@ -40,7 +40,7 @@ private:
     std::mt19937 engine_;
 };
 
-/// What a warp of the unit square must bear: its edges, and the numbers beside them.
+/// Inputs that a warp of the unit square must handle: its edges, its centre, and numbers just inside the edges.
 inline std::vector<Vec2f> extreme_inputs() {
     std::vector<Vec2f> all;
     for (const float x : {0.0f, 0x1p-24f, 0.5f, 0x1.fffffcp-1f, 0x1.fffffep-1f})

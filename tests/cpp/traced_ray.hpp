@@ -20,7 +20,7 @@ struct TracedRay {
     int surface_index;
 
     bool passed() const { return status == RayStatus::ok; }
-    /// Where the ray, as a straight line, crosses the plane at z.
+    /// Intersection of the ray, as a straight line, with the plane at z.
     Vec3d at(double z) const { return origin + ((z - origin.z) / direction.z) * direction; }
 };
 

@@ -106,7 +106,7 @@ TEST_CASE("holes: Embree's filter and the wide BVH stop a ray at the same triang
                 hits += hit.triangle != kNoTriangle;
                 through += hit.triangle != solid.triangle;
                 differ += hit.triangle != found.triangle[i] || hit.instance != found.instance[i];
-                // What hides is what is met, however the ray is asked.
+                // A shadow ray is blocked exactly if the closest-hit query finds a hit, with both traversals.
                 wrong_shadows += any != (hit.triangle != kNoTriangle);
                 wrong_shadows += (hidden[i] != 0) != (found.triangle[i] != kNoTriangle);
             }

@@ -1,5 +1,5 @@
-// What moves during an exposure: interpolation against closed forms, both traversals against each other and against the
-// scene as it stands at a time, and lights that move.
+// Motion during an exposure: interpolation against closed forms, both traversals against each other and against a
+// static scene at the same time, and moving lights.
 #if defined(REALCAM_HAS_BVH)
 
 #include <cmath>

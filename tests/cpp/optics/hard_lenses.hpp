@@ -83,7 +83,8 @@ struct Cassegrain {
         return with_film(
             lens_of({stop_plane(20, kRim), shadow, primary, mirror(-2 * p * m / (m - 1), conic, 0, kHole)}), kBack, 10);
     }
-    /// Of the light that comes in at a height: tan(angle / 2) = height / (2 f), as confocal conics keep its ratio.
+    /// Sine of the image-side angle of a ray that enters at this height: tan(angle / 2) = height / (2 f), because
+    /// confocal conics preserve the ratio of these tangents.
     static double sine_behind(double height) { return std::sin(2 * std::atan(height / (2 * kFocalLength))); }
 };
 

@@ -112,8 +112,8 @@ inline RayErrors errors_of(const TraceBackend& backend, const LensSystem& lens, 
         const double turn = size_of(direction - ray.direction);
         const double path = std::fabs(static_cast<double>(Real(found.optical_path[i]) - ray.optical_path));
         errors.ray = std::max({errors.ray, size_of(origin - ray.origin) / scale, turn, path / scale});
-        // Not of rays that graze a surface under less than 6 degrees: the rounding of a place or a direction in front
-        // of it, which is nothing there, moves them along it by ten times as much, and more.
+        // Rays that graze a surface at less than 6 degrees are left out: a rounding of their origin or direction in
+        // front of it, negligible there, moves the hit along the surface by ten times as much or more.
         if (ray.clearance < 0.01) continue;
         double image = 0;
         if (way == LightDirection::to_film) {

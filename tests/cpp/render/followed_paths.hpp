@@ -119,7 +119,7 @@ struct AddedLight {
     void (*add)(Scene&);
 };
 
-/// What may shine into the room besides its lamp.
+/// Lights that may be added to the room's lamp.
 inline constexpr AddedLight kAddedLights[] = {
     {"a lamp alone", [](Scene&) {}},
     {"a constant sky", [](Scene& s) { s.environment.constant = {2, 3, 4}; }},

@@ -76,7 +76,7 @@ private:
         box[2] = std::min(box[2], d.y), box[3] = std::max(box[3], d.y);
     }
 
-    /// Where passing stops between an inner and an outer place.
+    /// Edge of the passing interval, between a position inside and one outside, by bisection.
     template <class Passes>
     static double edge(Passes&& passes_at, double in, double out) {
         for (int i = 0; i < 45; ++i) {

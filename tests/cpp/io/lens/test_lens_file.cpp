@@ -260,8 +260,8 @@ TEST_CASE("a lens that is not there is named, with the nearest names") {
 }
 
 TEST_CASE("every bundled lens is valid, cites its source, and has the focal length that the source states") {
-    // As the lens files' sources state them; of the four classics, the figures of test_first_order.cpp. The rest of
-    // what the sources state is compared by tests/python/lens/test_bundled_lenses.py.
+    // Focal lengths stated by the lens files' sources; for the four classics, the figures of test_first_order.cpp.
+    // tests/python/lens/test_bundled_lenses.py compares the sources' other figures.
     const std::vector<std::pair<std::string, double>> stated = {{"achromat-75mm", 75},
                                                                 {"angulon-210mm", 210},
                                                                 {"apo-telephoto-180mm", 180},

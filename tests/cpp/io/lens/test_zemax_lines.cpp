@@ -1,4 +1,4 @@
-// What .zmx files have that OpticStudio itself does not write, or writes seldom.
+// Lines of .zmx files that OpticStudio itself never or rarely writes.
 
 #include <cmath>
 #include <string>
@@ -119,7 +119,7 @@ TEST_CASE("a glass by its number, and a glass that is picked up") {
         REQUIRE(reading.error == "");
         return focal_length(reading.lens);
     };
-    // What stands behind the number are the leftovers of another solve.
+    // The fields after the glass number are leftovers of another solve.
     CHECK(focal(singlet("517642 0 0 7734.3 17972.8 29.49 1 1 1 0 0")) == about(50 / 0.517, 1e-12));
     CHECK(focal(singlet("728284 0 0 1.5 40")) == about(50 / 0.728, 1e-12));
     CHECK(focal(singlet("517642 0 0 1.6 50", "GCAT SCHOTT\n")) == about(50 / 0.517, 1e-12));

@@ -27,7 +27,7 @@ double half_field(const LensSystem& lens) {
     return std::atan(0.5 * std::hypot(lens.film_width, lens.film_height) / f);
 }
 
-/// Where a ray ends that crosses only the first `count` surfaces; its status.
+/// End point and status of a ray that is traced through the first `count` surfaces only.
 struct Met {
     Vec3d at;
     RayStatus status;

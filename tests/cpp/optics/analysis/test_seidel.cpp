@@ -190,7 +190,7 @@ TEST_CASE("the Lagrange invariant of the sums is the same behind every surface o
             const SeidelRow& row = table.surfaces[i];
             const double a = sign * n[i + 1] * row.chief.slope * row.marginal.height;
             const double b = sign * n[i + 1] * row.marginal.slope * row.chief.height;
-            // Of the products that are subtracted.
+            // Magnitude of the products that are subtracted.
             const double scale = std::fabs(a) + std::fabs(b) + std::fabs(table.lagrange_invariant);
             worst = std::max(worst, std::fabs(a - b - table.lagrange_invariant) / scale);
         }

@@ -40,7 +40,7 @@ double largest(const Wavefront& w) {
 
 TEST_CASE("optical path differences and ray aberrations of the CODE V double Gauss") {
     LensSystem lens = io::read_lens("double-gauss-100mm");
-    // Nothing is vignetted by a rim; the listing has its own vignetting.
+    // Clear semi-diameters that do not vignette: the listing has its own vignetting.
     for (Surface& s : lens.surfaces)
         if (s.type != SurfaceType::stop) s.clear_semi_diameter = s.curvature == 0 ? 100 : 0.99 / std::fabs(s.curvature);
     const LensPath<double> path(lens, LightDirection::to_film, lens.wavelength_nm);
@@ -283,7 +283,7 @@ TEST_CASE("optical path differences agree with the same rays in fifty digits") {
                     worst = std::max(worst, std::fabs(error));
                     ++tried;
                     if (!std::isfinite(object)) continue;
-                    // What the whole lengths from the object would leave in double precision.
+                    // Error of the difference of the full distances from the object in double precision.
                     const double distance = 1 / from.inverse_distance;
                     const ObjectPoint::Entry e = w.rays.rays[i].entry, c = w.rays.chief.entry;
                     const double q = std::hypot(e.x, e.y), p = std::hypot(c.x, c.y);

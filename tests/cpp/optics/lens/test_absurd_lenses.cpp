@@ -65,7 +65,7 @@ LensSystem absurd_lens(Random& random, double decades) {
 struct Outcomes {
     int lenses = 0, numbers = 0, errors = 0, wrong = 0;
 
-    /// What is not a number must be an error.
+    /// Calls f, which returns true if its results are numbers. Any other result must be thrown as an Error.
     template <class F>
     void take(const char* what, F&& f) {
         CAPTURE(std::string(what));

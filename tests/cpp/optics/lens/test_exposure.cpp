@@ -177,9 +177,10 @@ TEST_CASE("light on the axis is pi sin^2(theta'), a quarter two stops down, and 
                 continue;
             }
             REQUIRE(truth > 0);
-            // Of 16384 stratified samples about 3% miss: 0.07%. What is asked for is 0.5%.
+            // About 3% of the 16384 stratified samples miss: an error of 0.07%. The requirement is 0.5%.
             CHECK(on_axis == about(truth, 0.002));
-            // The brute-force integral that the rest relies on: the light covers 140 x 140 points of its grid or more.
+            // The brute-force integral, on which the other checks rely: the light covers at least 140 x 140 grid
+            // points.
             if (f_number != 11) {
                 const double by_integral = irradiance_over_last_surface(lens, 0, 0);
                 CHECK(by_integral == about(truth, 0.003));

@@ -54,7 +54,7 @@ void check_best_focus(const LensSystem& lens) {
     CHECK(after > best);
     const double a = before * before + after * after - 2 * best * best;
     const double middle = 0.5 * step * (before * before - after * after) / a;
-    // Of its 256 heights about half pass, so the edge of the pupil is uncertain by 1/250 of its area; with
+    // About half of the focus search's 256 rays pass, so the edge of the pupil is uncertain by 1/250 of its area; with
     // half a millimetre of spherical aberration, as at f/2 here, that moves the focus by a few um.
     CHECK(std::fabs(middle) < 0.3 * step);
 }

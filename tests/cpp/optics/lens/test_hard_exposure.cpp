@@ -45,8 +45,8 @@ LensSystem hole(double radius, double distance) {
     return with_film(lens_of({stop_plane(0, radius)}), distance, distance);
 }
 
-/// Of a film point beside the axis under a round source that faces it (P. D. Foote, Scientific Papers of the Bureau of
-/// Standards 263, 1915).
+/// Irradiance of an off-axis film point under a parallel round source of radiance 1 (P. D. Foote, Scientific Papers of
+/// the Bureau of Standards 263, 1915).
 double irradiance_under_hole(double radius, double distance, double off_axis) {
     const double z2 = distance * distance, r2 = off_axis * off_axis, a2 = radius * radius;
     const double sum = z2 + r2 + a2;

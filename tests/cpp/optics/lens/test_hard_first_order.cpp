@@ -129,7 +129,7 @@ TEST_CASE("an afocal system has infinite focal lengths, and no focus or f-number
         afocal.push_back(lens_of(surfaces));
     }
     afocal.push_back(lens_of({stop_plane(0, 10)}));
-    // Of indices and radii that are no powers of two: what is left of its power is rounding.
+    // With indices and radii that are not powers of two, the computed power is only rounding error.
     for (const double n : {1.5168, 1.62, 1.7})
         for (const double r : {-77.7, -30.1}) {
             const double ocular = r / (n - 1), f = -2.7 * ocular;

@@ -21,8 +21,8 @@ LensPolynomial fitted(const LensSystem& lens, double film_radius) {
 
 }  // namespace
 
-// A pixel is 5 um wide: the picture of such polynomials cannot be told from the lens's, so that what they cost can be
-// compared with what the lens costs.
+// A pixel is 5 um wide: pictures by these polynomials are indistinguishable from the lens's, so that the cost of both
+// can be compared.
 TEST_CASE("a double Gauss is a polynomial of some degree") {
     const LensSystem lens = io::read_lens("double-gauss-50mm");
     const LensPolynomial polynomial = fitted(lens, 21.6);

@@ -124,7 +124,7 @@ TEST_CASE("a pupil found near that of a similar state holds all that passes, and
         for (LensState state : states_of(name)) {
             const double radius = half_diagonal(state.lens);
             const Pupil before(state.lens, radius);
-            // As a turn of two rings changes it from one frame to the next.
+            // A change of aperture and focus from one frame to the next.
             state.lens.stop_semi_diameter *= 0.99;
             state.lens.film_distance *= 1.0005;
             state.description += ", a little later";

@@ -126,7 +126,7 @@ TEST_CASE("rays meet the aspheres of the phone lens where an independent search 
     check_aspheres_of("phone-4mm", 6);
 }
 
-// Powers of r^2 alone add up to 1700 mm there, of which 4 are left.
+// The terms in powers of r^2 have magnitudes of up to 1700 mm in total there, and add up to 4 mm.
 TEST_CASE("so they do where the terms of an asphere are hundreds of times as large as their sum, and none is lost") {
     check_aspheres_of("phone-4mm-seven-elements", 18);
     const LensSystem phone = io::read_lens("phone-4mm-seven-elements");
@@ -237,7 +237,7 @@ TEST_CASE("a guess that is a root to the last digit, but in the wrong direction,
 }
 
 TEST_CASE("a sphere and a polynomial that nearly cancel leave roundings that the search puts up with") {
-    // Found by fuzzing: heights of -57 and +59 mm, of which 1.9 remain. With fused products the search had no end.
+    // Found by fuzzing: heights of -57 and +59 mm, whose sum is 1.9 mm. With fused products the search did not end.
     SurfaceView<float> step = asphere_in_air(-0.008210781f);
     step.rim_squared = step.search_squared = 14833.0703f;
     step.inverse_search_squared = 6.74169278e-05f;

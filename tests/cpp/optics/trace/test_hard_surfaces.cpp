@@ -108,7 +108,7 @@ struct Worst {
     long compared = 0;
 };
 
-/// What the oracle says of a ray at one surface.
+/// The oracle's decision on a ray at one surface, and its relative distance from an edge, where it would change.
 struct Verdict {
     bool passes;
     double clearance;

@@ -305,7 +305,8 @@ TEST_CASE("rays from as far away as a star reach the film where they do in 50 di
 
 namespace {
 
-/// Whether the rays pass, as a picture's lanes trace them and as a GPU's thread does, both without a record.
+/// For each ray: true if it passes, traced without a path record in N lanes, as for a picture (8) or on a GPU thread
+/// (1).
 template <int N>
 std::vector<bool> passes_without_record(const LensPath<float>& path, const RayBatch& rays) {
     std::vector<bool> passes;

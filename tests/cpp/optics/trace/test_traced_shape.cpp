@@ -10,7 +10,7 @@ using namespace realcam;
 
 namespace {
 
-/// What is made of a surface that nobody has asked for before: a thread begins with nothing kept.
+/// Shape of a surface computed from scratch, in a new thread, because each thread starts with an empty cache.
 TracedShape<double> made_anew(const Surface& surface) {
     TracedShape<double> shape;
     std::thread([&] { shape = traced_shape<double>(surface); }).join();

@@ -1,4 +1,4 @@
-// Where samples go, on pictures whose noise is known.
+// Distribution of samples over pictures of known noise.
 
 #include <cmath>
 #include <cstdint>
@@ -30,7 +30,7 @@ public:
             if (counts[i] == 0) continue;
             const double before = static_cast<double>(samples[i]), after = before + counts[i];
             for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) {
-                // What brings the variance of the mean from that of `before` to that of `after` samples.
+                // Changes the variance of the mean from that of `before` samples to that of `after` samples.
                 const double was = variance(sigma(i), before), is = variance(sigma(i), after);
                 const double keep = before > 0 ? is / was : 0;
                 errors_[c] = keep * errors_[c] + std::sqrt(std::max(0.0, is - keep * keep * was)) * normal(random_);

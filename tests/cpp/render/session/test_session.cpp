@@ -1,4 +1,4 @@
-// What all sessions have in common, on a device that only writes down what it is asked for.
+// Behaviour common to all sessions, with a device that only records its requests.
 
 #include <algorithm>
 #include <atomic>

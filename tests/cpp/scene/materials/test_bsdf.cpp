@@ -86,7 +86,7 @@ void add_test(ChiSquareTests& tests, const BsdfT& bsdf, bool is_narrow, unsigned
         else
             ++ended;
     }
-    // Directions below the horizon of a lobe have no density; they are the rest.
+    // Directions below the horizon of a lobe have no density; samples that end there have one bin.
     std::vector<double> expected = bins.expected, counts = bins.counts;
     expected.push_back(std::max(0.0, kSamples - total));
     counts.push_back(ended);
@@ -160,7 +160,7 @@ TEST_CASE("light takes the same way in both directions") {
             ++compared;
         }
     }
-    // Some twenty roundings, of which the narrowest lobe (alpha = 0.0225) makes 1 / alpha^2 of that of its half vector.
+    // Some twenty roundings; the narrowest lobe (alpha = 0.0225) multiplies the one of its half vector by 1 / alpha^2.
     hold({"Samplers", "BSDFs: reciprocity", std::to_string(compared) + " pairs of directions", "core", "float32", worst,
           2e-3, "relative"});
 }

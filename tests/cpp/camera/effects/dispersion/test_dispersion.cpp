@@ -106,7 +106,7 @@ TEST_CASE("the film's matrix over all wavelengths is the identity for D65, and s
             for (int k = 0; k < 9; ++k) mean[k] += static_cast<double>(cell.film[k]) / FilmSpectrum::kCells;
         }
         for (int row = 0; row < 3; ++row) {
-            // Of 256 floats of up to 3, whose roundings add up to some 1e-7.
+            // The mean of 256 floats of up to 3, whose rounding errors add up to some 1e-7.
             CHECK(std::fabs(mean[3 * row] + mean[3 * row + 1] + mean[3 * row + 2] - 1) < 1e-6);
             if (std::string(name) == "D65")
                 for (int column = 0; column < 3; ++column)
