@@ -26,13 +26,13 @@ RAYS_PER_RADIUS = 4_000
 
 
 def limit_um(lens: rc.Lens) -> float:
-    """What float32 may leave of an image point, um: roundings grow with a lens, as pixels do with the film."""
+    """Largest error of an image point allowed in float32, um: rounding grows with the lens, as pixels with the film."""
     return LIMIT_UM * max(1.0, 0.5 * float(np.hypot(*lens.film_mm)) / SMALL_FILM_MM)
 
 
 @dataclass(frozen=True)
 class PupilBoxes:
-    """What film points at these radii see of the pupil lies in these boxes of direction cosines (l, m).
+    """Boxes of direction cosines (l, m) that contain the pupil as seen from film points at these radii.
 
     The film point lies on the +x axis; low and high are (N, 2).
     """
@@ -131,7 +131,7 @@ def rays_over_film_and_pupil(lens: rc.Lens, seed: int = 1) -> Rays:
 
 
 def back_to_film(lens: rc.Lens, out: rc.TraceResult) -> tuple[np.ndarray, np.ndarray]:
-    """Where rays that went to the scene meet the film again in float64 (N, 2), and which of them do."""
+    """Traces rays from the scene back in float64. Returns their film points (N, 2) and which rays reach the film."""
     back = lens.trace(out.origins_mm, -out.directions, start="scene", dtype="float64")
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = back.directions[:, :2] / back.directions[:, 2:]

@@ -1,4 +1,4 @@
-"""Whether a ray passes a lens: where float32 decides otherwise than float64, and how near to an edge that is.
+"""Rays that pass a lens in float32 but not in float64, or the reverse, and their distance from an edge.
 
 An edge is a rim, a hole, the rim of the stop, the critical angle of total internal reflection, or a ray that grazes a
 surface. Nearness is relative: 1e-6 is a millionth of the rim's radius, or of the sine of the angle.
@@ -55,7 +55,7 @@ def rays_at_edges(lens: rc.Lens, seed: int = 2) -> Rays:
 
 
 def distance_to_edge(lens: rc.Lens, rays: Rays) -> np.ndarray:
-    """Of rays on which float32 and float64 disagree: from the edge at which one of the two ends the ray."""
+    """For rays on which float32 and float64 disagree: relative distance from the edge at which one ends the ray."""
     single, double = rays.trace(lens, "float32"), rays.trace(lens, "float64")
     status = np.where(passes(double), single.status, double.status)
     ended = np.where(passes(double), single.surface_index, double.surface_index)

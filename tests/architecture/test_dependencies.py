@@ -11,7 +11,7 @@ CPP = Path(__file__).resolve().parents[2] / "cpp"
 CORE = ("math", "optics", "camera", "scene", "render")
 BACKENDS = ("embree", "cuda")
 
-# Folder -> the folders that it may include, besides itself and the headers of cpp/ itself.
+# Folder -> other folders that it may include. Every folder may include itself and the headers directly in cpp/.
 MAY_INCLUDE = {
     "": set(),
     "math": set(),
@@ -116,7 +116,7 @@ def included_by(path: Path) -> list[Path]:
 
 
 def uses(paths: Iterable[Path], pattern: str, meaning: str) -> list[str]:
-    """What a message says of each place where the code of one of `paths` matches."""
+    """One line "file:line meaning: match" for each match of `pattern` in the code of `paths`."""
     return [
         f"{name_of(path)}:{code_of(path).count(chr(10), 0, match.start()) + 1} {meaning}: {match.group()}"
         for path in paths

@@ -21,7 +21,7 @@ namespace realcam::render_kernel_detail {
 template __global__ void render<LensKind::plain, SceneKind::plain, 0, false>(const __grid_constant__ RenderJob, int);
 }
 """
-# What is cut out of which file: each pattern must be found once.
+# File -> (pattern, replacement) pairs that remove the effects from it. Each pattern must match exactly once.
 CUTS = {
     "camera/effects/effect_views.hpp": [
         (r"    Effects effects;.*?\n\n", ""),

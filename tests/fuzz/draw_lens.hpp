@@ -1,5 +1,5 @@
 #pragma once
-// A lens from fuzz bytes: 1 to 100 surfaces, of which as many as the input wants are hard cases.
+// A lens drawn from fuzz bytes: 1 to 100 surfaces; the input decides how many of them are hard cases.
 
 #include <algorithm>
 
@@ -10,8 +10,8 @@
 namespace realcam::fuzz {
 
 struct LensStyle {
-    double size = 10;  ///< of its semi-diameters, mm
-    int hard = 0;  ///< of 256 choices, how many are a hard case rather than a number that lenses have
+    double size = 10;  ///< scale of the lens's semi-diameters, mm
+    int hard = 0;      ///< out of 256 choices, the number that are hard cases rather than values of usual lenses
 };
 
 /// Largest curvature of a conic that reaches the rim: there the surface stands upright.

@@ -37,7 +37,7 @@ struct Case {
     LightDirection way;
     const RayBlock& rays;
     const realcam_kernels& kernels;
-    bool valid;  ///< else the lens is one that nobody can build, and only the end of the trace is asked for
+    bool valid;  ///< false for a lens that cannot be built; then the trace only has to end
 };
 
 template <class T>
@@ -152,7 +152,7 @@ bool passes_validation(const LensSystem& lens) {
     }
 }
 
-/// What LensPath takes for granted of any lens.
+/// True if the lens meets LensPath's preconditions.
 bool can_be_traced(const LensSystem& lens) {
     try {
         lens.indices(lens.wavelength_nm);

@@ -29,17 +29,17 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-LONGEST_S = 60  # a thousand times what one takes
+LONGEST_S = 60  # a thousand times the usual time of a case
 
 
 @dataclass(frozen=True)
 class Target:
-    """What is fuzzed. A case is anything that can be pickled."""
+    """A fuzz target. A case is any picklable value."""
 
     name: str
     seeds: Callable[[], list[Any]]
-    case_of: Callable[[list[Any], int, int], Any]  # of seeds, seed and number
-    read: Callable[[Any], tuple[str, str]]  # what became of it ("read", "refused" or "broken"), and why that is broken
+    case_of: Callable[[list[Any], int, int], Any]  # arguments: seeds, random seed, index
+    read: Callable[[Any], tuple[str, str]]  # "read", "refused" or "broken", and the reason if it is broken
 
 
 class CoreFinder(importlib.abc.MetaPathFinder):

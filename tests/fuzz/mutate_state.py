@@ -17,7 +17,7 @@ OTHERS = (None, True, False, (), (1,), [], {}, "text", b"\xff\xfe", b"", 3.5, -7
 
 
 def places(state: Any, path: Path = ()) -> Iterator[Path]:
-    """Where something stands in it, itself among them."""
+    """Yields the path of every item in nested tuples, including the empty path of `state` itself."""
     yield path
     if isinstance(state, tuple):
         for i, item in enumerate(state):

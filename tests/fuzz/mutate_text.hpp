@@ -85,7 +85,7 @@ inline std::vector<Span> words_of(const std::string& text) {
     return found;
 }
 
-/// What stands between brackets, with them.
+/// Spans of the bracketed parts of a text, including the brackets.
 inline std::vector<Span> brackets_of(const std::string& text) {
     std::vector<Span> found;
     std::vector<std::size_t> open;

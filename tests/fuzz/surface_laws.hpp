@@ -1,10 +1,10 @@
 #pragma once
-// What must be true of a ray at every surface that it meets, whatever surface and ray: it lies on the surface, inside
-// the rim, and obeys Snell's law; and what stopped it was there.
+// Laws that hold for every ray at every surface that it meets: the hit lies on the surface and inside the rim, and the
+// ray obeys Snell's law; if the ray ends there, the reported cause is real.
 //
-// The bounds are backward errors: what is allowed is what a few roundings of the numbers that enter a formula can do,
-// so they hold at tangents and at the edges of hemispheres too. `kRoundings` of them: the longest chain of operations
-// from a ray to a hit has about twenty.
+// The bounds are backward errors: they allow the effect of `kRoundings` roundings of the numbers that enter a formula,
+// so they hold at tangents and at the edges of hemispheres too. The longest chain of operations from a ray to a hit has
+// about twenty.
 
 #include <algorithm>
 
@@ -66,25 +66,25 @@ public:
 
 private:
     static constexpr double eps = std::numeric_limits<T>::epsilon();
-    /// Squares of smaller numbers are none.
+    /// Squares of smaller numbers underflow.
     static constexpr double tiny = std::numeric_limits<T>::digits == 24 ? 0x1p-63 : 0x1p-511;
 
     struct Near {
-        double distance, distance_bound;  ///< of the hit from the surface, mm
+        double distance, distance_bound;  ///< distance of the hit from the surface, mm
         Vec3d normal;
-        double normal_bound;    ///< radians
+        double normal_bound;  ///< radians
         double incidence_bound;  ///< of p . normal, over |p|
     };
 
     Near conic_at(const Crossing& ray) const {
         const Vec3d o = ray.before, at = ray.at;
-        // A conic is met from the vertex plane, where a ray that runs along it may come by far out.
+        // The search for a conic starts in its vertex plane, which a ray nearly parallel to it crosses far out.
         const double detour = step_.kind == SurfaceShape::conic ? 10 * std::fabs(o.z) : 0;
         const double way = length(at - o) + 2 * detour, from = length(o) + detour;
         const Vec3d gradient{-c_ * at.x, -c_ * at.y, 1 - c_ * q_ * at.z};
         const double g = length(gradient);
         const double value = residual(at);
-        // Of the terms of A t^2 - 2 G t + F, and of o + t p.
+        // Sum of the magnitudes of the terms of A t^2 - 2 G t + F, and of o + t p.
         const double terms = bend_ * (from * from + dot(at, at) + way * way) + 2 * (std::fabs(o.z) + std::fabs(at.z)) +
                              2 * way * (1 + bend_ * from) + 2 * g * (from + way) + tiny;
         const double incidence = kRoundings * eps * (1 + bend_ * (from + way));  // of G - A t
@@ -154,11 +154,11 @@ private:
                      n = std::sqrt(1 + static_cast<double>(step_.squared_index_change));
         const Vec3d change = ray.after - ray.along;
         const double turned = length(cross(change, near.normal));
-        // A sphere's normal is (-cx, -cy, 1 - cz) as it is, longer or shorter where the hit is not on the sphere.
+        // A sphere's normal (-cx, -cy, 1 - cz) is not normalised: it has unit length only if the hit is on the sphere.
         const double stretch = step_.kind == SurfaceShape::sphere ? 2 * bend_ * near.distance_bound : 0;
         const double length_bound = kRoundings * eps * (p + n * p) +
                                     length(change) * (p * near.incidence_bound + length(change) * stretch) / out;
-        // A length that was made right again turns the part along the surface.
+        // Restoring the length of the direction also changes its component along the surface.
         const double turn_bound = length(change) * near.normal_bound + kRoundings * eps * (p + out) + length_bound;
         if (!(turned <= turn_bound)) broken("Snell's law: the change is not along the normal", ray, turned, turn_bound);
         const double length_error = std::fabs(out - n * p);
@@ -269,7 +269,7 @@ private:
         const Vec3d at = o + high * p;
         const double slope = profile_at(at.x * at.x + at.y * at.y).slope, r = std::hypot(at.x, at.y);
         const double inwards = sense * (p.z - slope * (at.x * p.x + at.y * p.y) / std::max(r, tiny));
-        // Where it grazes, several crossings may lie within the roundings of one, and the sense is that of any of them.
+        // At grazing incidence several intersections may lie within the rounding of one; any may determine the sense.
         if (inwards > 1e-3 * length(p)) broken("an asphere that is met counts as missed", ray, near, far);
     }
 

@@ -43,7 +43,8 @@ struct KernelTrace {
     }
 };
 
-/// As the backends take rays in. Returned through memory: gcc 12 takes (double)(float)x of two neighbours for x.
+/// Enters rays into the lens as the backends do. Writes through memory: gcc 12 takes (double)(float)x of two adjacent
+/// values for x.
 template <class T>
 __attribute__((noinline)) void enter(const RayBlock& rays, const KernelTrace& trace, LensRays<T, kRays>& out) {
     for (int i = 0; i < kRays; ++i) {

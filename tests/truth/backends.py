@@ -7,7 +7,7 @@ import realcam as rc
 
 from .prescription import Prescription, Rays, Row, Traced
 
-# What may trace, and what Lens.trace needs to be told so.
+# Available backends, with the arguments of Lens.trace that select them.
 BACKENDS: dict[str, dict] = {"Embree": {"device": "cpu"}}
 if any(device.name.startswith("cuda:") for device in rc.devices()):
     BACKENDS["CUDA"] = {"device": "cuda"}

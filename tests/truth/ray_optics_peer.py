@@ -11,7 +11,7 @@ from .prescription import Prescription, Rays, Row, Traced
 NAME = "ray-optics"
 PACKAGE = "rayoptics"
 
-# Of an asphere's Newton step, mm. ray-optics returns the point before the last step.
+# Tolerance of an asphere's Newton step, mm. ray-optics returns the point before the last step.
 TOLERANCE = 1e-13
 # Object to first vertex. ray-optics carries the chief ray from the object to the lens: over its usual 1e10 mm of an
 # object at infinity, a rounding grows to 5e-5 mm in the pupils.

@@ -199,7 +199,7 @@ def test_a_perfect_lens_has_airys_first_dark_ring() -> None:
 
 
 def test_mtf_is_the_transform_of_the_point_spread_function() -> None:
-    """Also with vignetting, obstruction and defocus: of light that falls on the array all but 0.3%."""
+    """Holds with vignetting, obstruction and defocus too; all but 0.3% of the light falls on the PSF array."""
     cases = [
         (rc.Lens.load("double-gauss-50mm").stopped_down(4), 15.0, 0.0),
         (rc.Lens.load("double-gauss-50mm").stopped_down(4), 22.0, 0.05),

@@ -26,7 +26,7 @@ def measured(what: str, tried: str, worst: float, limit: float, unit: str = "wav
 
 
 def places_on_the_stop(field: listing.FieldAberrations) -> np.ndarray:
-    """Where the listing's rays, given in the real entrance pupil, cross the stop, as shares of its radius."""
+    """Stop points, in units of the stop's radius, of the listing's rays, which are given in the real entrance pupil."""
     angle = math.radians(field.field_deg)
     direction = np.array([0.0, math.sin(angle), math.cos(angle)])
     origins = np.array([(x, y, field.pupil_distance) for x, y, *_ in field.rays]) - 80 * direction

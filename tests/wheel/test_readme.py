@@ -34,13 +34,13 @@ def python_block() -> str:
 
 
 def commands() -> list[list[str]]:
-    """Those of the section about the command line, without comments."""
+    """Commands in the README's section about the command line, without comments."""
     section = README.read_text(encoding="utf-8").partition("\n## Command line\n")[2].partition("\n## ")[0]
     return [shlex.split(line, comments=True) for line in re.findall(r"^    (realcam .*)", section, re.MULTILINE)]
 
 
 def run(words: Sequence[str], folder: Path) -> tuple[float, str]:
-    """The CPU seconds of a program in a folder, and what it printed. It finds nothing of the repository."""
+    """Runs a program in a folder, hidden from the repository. Returns its CPU seconds and its output."""
     environment = {key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "REALCAM_OIDN")}
 
     def used() -> float:
