@@ -19,15 +19,15 @@ RAYS_PER_PAIR = 12
 
 
 def decided_otherwise(lens: rc.Lens, rays: Rays) -> np.ndarray:
-    """Which rays pass in float32 and not in float64, or the other way round."""
+    """Mask of the rays that pass in only one of float32 and float64."""
     return passes(rays.trace(lens, "float32")) != passes(rays.trace(lens, "float64"))
 
 
 def rays_at_edges(lens: rc.Lens, seed: int = 2) -> Rays:
     """Rays on both sides of edges, 1e-8 to 1e-3 away in direction cosines.
 
-    Between two rays of one film point, of which one passes, an edge is found by bisection in float64; so whatever ends
-    rays in this lens is met.
+    An edge is found by bisection in float64 between two rays of one film point, only one of which passes; so every kind
+    of edge that ends rays in this lens occurs.
     """
     random = np.random.default_rng(seed)
     radii, cosines = sample_boxes(pupil_boxes(lens), PAIRS_PER_RADIUS, random)

@@ -1,4 +1,4 @@
-"""An effect that is switched off leaves the GPU's code as if it did not exist.
+"""A disabled effect leaves the GPU's code identical to code without that effect.
 
 The kernel without effects is compiled twice: from the sources, and from a copy out of which the effects were cut, with
 all data that they have in a camera. Both must have the same instructions; only places of arguments may differ.

@@ -1,5 +1,5 @@
 #pragma once
-// Meshes and rays for the tests of the BVH, and what is true of them in double precision.
+// Meshes and rays for the tests of the BVH, and reference intersections in double precision.
 
 #include <algorithm>
 #include <cmath>
@@ -107,7 +107,7 @@ struct ExactHit {
     double margin = 0;  // least barycentric: how far inside the triangle, or outside if negative
 };
 
-// One triangle in double precision, Moller and Trumbore's way: nothing in common with the routine under test.
+// Intersection with one triangle in double precision, by Moller and Trumbore: independent of the routine under test.
 inline ExactHit exact_hit(const Mesh& mesh, std::size_t triangle, const BvhRay& ray) {
     const std::uint32_t* corner = mesh.triangles[triangle].vertices;
     const auto a = static_cast<Vec3d>(mesh.positions[corner[0]]);

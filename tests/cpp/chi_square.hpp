@@ -1,5 +1,5 @@
 #pragma once
-// Pearson's chi-square test of samples against a density that is integrated by quadrature, and what it needs.
+// Pearson's chi-square test of samples against a density that is integrated by quadrature, with its helpers.
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -150,7 +150,7 @@ public:
         samples_ += samples;
         bins_ += static_cast<double>(expected.size());
         ++tests_;
-        // The density is one: what its integral lacks, quadrature has lost.
+        // The density integrates to 1: the difference of `total` from it is the error of the quadrature.
         total_error_ = std::max(total_error_, std::fabs(total / samples - 1));
         const double p = outliers > 0 ? 0 : p_value(expected, counts);
         worst_ = std::max(worst_, -std::log10(std::max(p, 1e-300)));

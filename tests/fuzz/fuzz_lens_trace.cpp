@@ -82,7 +82,7 @@ void check_no_record(const Case& test, const LensPath<T>& path, const BlockResul
         const bool passed = no_record.status[i] == 0;
         Vec3d from = test.rays.origin[i];
         from.z -= path.entry_position;
-        // Farther ones are first brought near, which each instruction set rounds in its own way.
+        // Farther origins are first moved near the lens, which each instruction set rounds differently.
         if (!(length(from) <= path.entry_reach)) continue;
         if (passed != (out.status[i] == 0)) {
             say<T>("a record changes whether a ray passes", test, out, i, no_record.status[i]);
@@ -100,7 +100,7 @@ void check_no_record(const Case& test, const LensPath<T>& path, const BlockResul
     }
 }
 
-/// Both from one compilation, because each instruction set rounds in its own way.
+/// Uses the kernels of the same instruction set, because each instruction set rounds differently.
 void trace_without_record(const Case& test, const LensPath<float>& path, LensRays<float, kRays>& rays, BlockResult&) {
     const LensView<float> view = path.view();
     test.kernels.trace_block(&view, &rays);

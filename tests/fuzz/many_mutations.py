@@ -66,7 +66,7 @@ def finding(target: Target, folder: Path, seed: int, number: int) -> Path:
 
 
 def work(target: Target, first: int, last: int, seed: int, folder: Path) -> None:
-    """Prints what became of all: a line that a program reads."""
+    """Reads the cases from `first` to `last`. Prints their outcomes as a line for another program to parse."""
     cases = target.seeds()
     counts: Counter[str] = Counter()
     with (folder / f"at-{seed}").open("wb", buffering=0) as at:

@@ -1,5 +1,5 @@
 #pragma once
-// Small scene files that are right and use as much of their formats as is read: what the mutations start from.
+// Small valid scene files, from which mutations start; they use every part of their formats that realcam reads.
 
 #include <cstdint>
 #include <cstring>

@@ -35,7 +35,7 @@ public:
 
     void check(const Crossing& ray) const {
         const bool on_surface = ray.status != RayStatus::missed && ray.status != RayStatus::no_convergence;
-        // Squares beyond say nothing; such a ray is out of every rim.
+        // Squares of larger lengths overflow; such a ray is outside every rim.
         if (!(length(ray.at) < 1e30) || !(length(ray.before) < 1e30)) return;
         if (!on_surface) {
             if (!same(ray.at, ray.before)) broken("a ray that ended has moved", ray, 0, 0);
@@ -98,7 +98,8 @@ private:
         return static_cast<double>(c * (x * x + y * y + q * z * z) - 2 * z);
     }
 
-    /// An asphere at a distance from the axis. The sums of magnitudes are what roundings of the polynomial scale with.
+    /// Profile of an asphere at one distance from the axis. `sizes` and `slope_sizes` are sums of the magnitudes of the
+    /// polynomial's terms, which its rounding errors scale with.
     struct Profile {
         double sag, slope, root;  ///< slope: d sag / dr; root: of 1 - (1 + k) c^2 r^2
         double sizes, slope_sizes;
@@ -133,9 +134,9 @@ private:
         const double axial = std::fabs(o.z) + std::fabs(at.z - o.z) + std::fabs(here.sag) +
                              static_cast<double>(step_.sag_max - step_.sag_min) / 16;
         const double lateral = std::fabs(here.slope) * (length(o) + length(at - o));
-        // A wall has no height where the place has roundings as large as its slope makes them.
+        // On a very steep part the height is uncertain by the rounding of the position times the slope.
         const double height = kRoundings * eps * (axial + lateral + here.sizes) + std::fabs(c_) * square * edge + tiny;
-        // A wall's slope has no bound, but the angle of its normal has.
+        // The slope of a steep part is unbounded, but the angle of its normal is not.
         const double angle = std::atan(here.slope);
         double turn = 0;
         for (const double side : {-kRoundings * eps, kRoundings * eps}) {
@@ -206,7 +207,7 @@ private:
             if (ray.status == RayStatus::ok && open_least > 0) broken("passed behind a blade", ray, open_least, scale);
         }
     }
-    /// Positive behind a blade; `scale`: what rounding can change.
+    /// Returns a number that is positive behind a blade. `scale`: receives the bound of its rounding error.
     double blades(Vec3d at, double& scale) const {
         const double h = static_cast<double>(iris_.apothem), k = static_cast<double>(iris_.curvature);
         double extent = -1e300;
@@ -218,8 +219,9 @@ private:
         return k * (r2 + h * h) + 2 * (1 - k * h) * extent - 2 * h;
     }
 
-    /// A conic that is met squarely must be met. How much of the discriminant, and of the near cap, rounding can take
-    /// away depends on how far the ray comes from; a hundredth is past that, or the case is left out.
+    /// Checks that a ray that clearly intersects a conic is not reported as missed. The rounding of the discriminant
+    /// and of the near cap depends on the distance of the ray's origin; rays for which it may exceed 1/100 are left
+    /// out.
     void check_miss(const Crossing& ray) const {
         using Long = long double;
         const Vec3d od = ray.before, pd = ray.along;
@@ -256,8 +258,7 @@ private:
             const auto r2 = static_cast<T>(at.x * at.x + at.y * at.y);
             return sense * (at.z - static_cast<double>(asphere_sag(step_, r2).height));
         };
-        // Outside, the surface goes on as a plane. Whether a ray that meets its edge crosses the one or the other is
-        // open.
+        // Outside the search radius the surface continues as a plane. A ray that hits the edge may cross either.
         const double to_edge = (static_cast<double>(step_.sag_edge) - o.z) / p.z;
         const double ex = o.x + to_edge * p.x, ey = o.y + to_edge * p.y,
                      search = static_cast<double>(step_.search_squared);

@@ -1,5 +1,5 @@
 #pragma once
-// The fuzz targets: functions of bytes, that report() what they find.
+// The fuzz targets: functions of bytes that report() their findings.
 
 #include <cstddef>
 #include <cstdint>

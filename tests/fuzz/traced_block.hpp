@@ -57,7 +57,8 @@ __attribute__((noinline)) void enter(const RayBlock& rays, const KernelTrace& tr
     }
 }
 
-/// A ray among others, whose search for a hit may go on longer, ends as it does alone on a GPU's thread.
+/// True if ray i of a block, in which other rays may need more iterations, ends exactly as if traced alone, as on a
+/// GPU.
 template <class T>
 bool same_alone(const LensPath<T>& path, const LensRays<T, kRays>& start, const LensRays<T, kRays>& end, int i) {
     LensRays<T, 1> ray;
@@ -70,7 +71,7 @@ bool same_alone(const LensPath<T>& path, const LensRays<T, kRays>& start, const 
            length(ray.direction[0] - end.direction[i]) == 0;
 }
 
-/// Surface by surface in one go: the numbers between the surfaces are those that the whole trace has there.
+/// Checks every surface of one trace, with the numbers that the whole trace has between the surfaces.
 template <class T>
 void check_surfaces(const LensPath<T>& path, LensRays<T, kRays>& rays) {
     const LensView<T> lens = path.view();

@@ -142,8 +142,8 @@ def hold_parity(a: rc.Image, b: rc.Image) -> None:
     # Every ray that one sends through the lens, the other sends too; decisions at its rims may differ by rounding.
     assert a.stats.sampled_rays == b.stats.sampled_rays
     assert abs(a.stats.passed_rays - b.stats.passed_rays) <= 1 + 1e-5 * a.stats.sampled_rays
-    # Depth is a mean over the samples that met something. One that passes an edge changes it also where what lies
-    # behind is as bright as the edge.
+    # Depth is a mean over the samples that hit a surface. A sample that passes an edge changes it even if the surface
+    # behind is as bright as the one in front.
     met = np.isfinite(a.depth) & np.isfinite(b.depth) & kept
     assert (~np.isclose(b.depth[met], a.depth[met], rtol=1e-3, atol=0)).mean() <= ASTRAY_SHARE
 

@@ -1,4 +1,4 @@
-"""realcam as one more program that is given a prescription and rays: what the peers and the oracle are held against."""
+"""realcam as one more program that traces rays through a prescription, for comparison with the peers and the oracle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rays for a comparison: few decimals, so that every program is given the same numbers, and a file stays small."""
+"""Rays for a comparison: few decimals, so that every program gets the same numbers and the file stays small."""
 
 from __future__ import annotations
 

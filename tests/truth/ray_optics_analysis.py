@@ -37,9 +37,9 @@ ABSENT = {
 @dataclass(frozen=True)
 class Opinion:
     """seidel: (surfaces, 5), S_I to S_V in mm, for a marginal ray that meets the stop's edge.
-    points: (N, 2), mm, of rays through PLACES, on the film, from the axis; nan where its search finds no ray.
-    chief_point: (2,), of the ray through the stop's middle.
-    opd: (N,), mm, against the sphere about chief_point through the place where that ray crosses the axis.
+    points: (N, 2), film points in mm from the axis of the rays through PLACES; nan if the search finds no ray.
+    chief_point: (2,), film point of the ray through the centre of the stop.
+    opd: (N,), mm, against the sphere about chief_point through the point at which that ray crosses the axis.
     """
 
     seidel: np.ndarray
@@ -85,7 +85,7 @@ def _path_to_sphere(model: Any, ray: Any, chief: Any) -> float:
 
 
 def write(version: str, opinions: dict[str, tuple[float, Opinion]]) -> None:
-    """opinions: field angle in degrees and what was said, by the names of lenses."""
+    """opinions: lens name -> field angle in degrees and results."""
     lenses = {
         name: {"field_deg": field, **{key: value.tolist() for key, value in vars(said).items()}}
         for name, (field, said) in opinions.items()
@@ -104,7 +104,7 @@ def read() -> dict[str, tuple[float, Opinion]]:
 
 
 class _Aim:
-    """Rays of an object point through given places of the stop. ray-optics' own search stops at 1e-8 mm."""
+    """Rays of an object point through specified points of the stop. ray-optics' own search stops at 1e-8 mm."""
 
     def __init__(self, model: Any, stop: int, point: np.ndarray, pupil: np.ndarray) -> None:
         self.sequence, self.stop, self.point, self.pupil = model["seq_model"], stop, point, pupil

@@ -124,7 +124,7 @@ def first_order(prescription: Prescription) -> dict[str, float]:
         "f_number": abs(data.efl) / diameter,
         "entrance_pupil_position_mm": data.enp_dist,
         "entrance_pupil_diameter_mm": diameter,
-        # From its chief ray; its own exp_dist holds where its image surface stands in the paraxial focus.
+        # From ray-optics' chief ray, because its exp_dist is valid only with the image surface at the paraxial focus.
         "exit_pupil_position_mm": prescription.vertices[-1] - chief[0] / chief[1],
         "exit_pupil_diameter_mm": 2 * data.exp_radius * scale,
     }

@@ -60,7 +60,7 @@ def theirs(peers: list[mi.Scene], sensor: mi.Sensor, falloff: np.ndarray, spp: i
 
 
 def falloff_of(taken: rc.Camera) -> np.ndarray:
-    """(H, W, 1): irradiance on the film for a radiance of 1, which is what Mitsuba's pinhole gives."""
+    """(H, W, 1): irradiance on the film for a radiance of 1; Mitsuba's pinhole records the radiance."""
     rays = taken.generate_rays(spp=16)
     return (np.bincount(rays.pixels, rays.weights, WIDTH * HEIGHT) / 16).reshape(HEIGHT, WIDTH, 1)
 

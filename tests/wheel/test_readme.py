@@ -68,7 +68,7 @@ def test_the_first_steps_run_in_an_empty_folder_without_grain(tmp_path: Path) ->
     if run([PYTHON, "-c", "from realcam.installation import denoiser_library as d; print(d())"], tmp_path)[1] == "\n":
         pytest.skip("pictures are denoised, and the extra realcam[denoise] is not installed")
     seconds = all_steps(tmp_path / "first")
-    if seconds > CPU_S:  # what other programs do meanwhile makes CPU seconds longer
+    if seconds > CPU_S:  # other programs on the machine can increase the CPU time
         seconds = min(seconds, all_steps(tmp_path / "second"))
     named = set(re.findall(r'save\("(.*?)"\)', python_block()))
     named |= {word for words in commands() for option, word in itertools.pairwise(words) if option == "-o"}

@@ -1,4 +1,4 @@
-// Rays in packets for Embree: what is left out is not read, and has an answer all the same.
+// Ray packets for Embree: inactive rays are not read, and their results are defined nevertheless.
 #if defined(REALCAM_HAS_BVH)
 
 #include "doctest/doctest.h"

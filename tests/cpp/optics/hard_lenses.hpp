@@ -124,7 +124,7 @@ inline std::vector<Surface> galilean(double rim, double gap_behind) {
     return {refracting(128, 0, Glass::constant(2), rim), refracting(0, 64, Glass::air(), rim),
             refracting(-64, 0, Glass::constant(2), 0.6 * rim), refracting(0, gap_behind, Glass::air(), 0.6 * rim)};
 }
-/// The same the other way round: twice as wide.
+/// The galilean elements reversed: parallel light leaves them parallel and twice as wide.
 inline std::vector<Surface> reversed_galilean(double rim, double gap_behind) {
     return {refracting(0, 0, Glass::constant(2), 0.6 * rim), refracting(64, 64, Glass::air(), 0.6 * rim),
             refracting(0, 0, Glass::constant(2), rim), refracting(-128, gap_behind, Glass::air(), rim)};

@@ -1,6 +1,6 @@
 #pragma once
-// Every way in which this machine can trace rays through a lens: the kernels of each instruction set and a GPU, in both
-// number types. A test that loops over trace_backends() holds all of them to its bound.
+// All trace backends of this machine: the kernels of each instruction set and a GPU, in both number types. A test that
+// loops over trace_backends() applies its bound to all of them.
 
 #include <functional>
 #include <string>

@@ -42,7 +42,7 @@ private:
         return square > 0 && trace_(film_, {l, m, -std::sqrt(square)}).passed();
     }
 
-    /// The box around what passes, from grids that close in on it.
+    /// Finds the bounding box of the passing region by successively finer grids.
     void find_box() {
         const Vec3d rim{0, 0,
                         lens_.last_vertex() + lens_.surfaces.back().sag(lens_.surfaces.back().clear_semi_diameter)};

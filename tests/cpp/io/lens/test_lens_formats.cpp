@@ -1,4 +1,5 @@
-// Lens files of other programs: what is read, what is refused and how, and what comes back of what is written.
+// Lens files of other programs: files that are read, refused files and their messages, and round trips of written
+// files.
 
 #include <algorithm>
 #include <cmath>

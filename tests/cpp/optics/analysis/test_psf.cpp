@@ -1,5 +1,5 @@
-// Point spread functions: closed forms of perfect and defocused pupils, and what has to be the same whichever way it is
-// reckoned. tests/python/design/test_psf.py compares real lenses with another program's propagation.
+// Point spread functions: closed forms of perfect and defocused pupils, and results that must not depend on the method.
+// tests/python/design/test_psf.py compares real lenses with another program's propagation.
 
 #include "optics/analysis/psf.hpp"
 

@@ -87,8 +87,8 @@ TEST_CASE("optical path differences and ray aberrations of the CODE V double Gau
             const double sagittal = -(beside.points[0].x - beside.points[1].x) / (slope(0) - slope(1));
             const double tangential = -(beside.points[2].y - beside.points[3].y) / (slope(2) - slope(3));
             CHECK(std::fabs(sagittal - field.x_focus) < 1e-6);
-            // The listed ones differ from the limit by 2.2e-5 and -1.5e-5: what a difference to one side leaves, of one
-            // ray 5e-4 of the pupil above the chief ray, where there is coma.
+            // The listed foci differ from the limit by 2.2e-5 and -1.5e-5: the error, in the presence of coma, of a
+            // one-sided difference with a ray 5e-4 of the pupil above the chief ray.
             CHECK(std::fabs(tangential - field.y_focus) < 2.5e-5);
             const AimedRay chief = w.rays.chief;
             const ObjectPoint object(lens, lens.wavelength_nm, point);

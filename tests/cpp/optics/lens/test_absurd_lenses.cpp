@@ -1,5 +1,5 @@
-// Lenses that no one should make, as large, small, steep and dense as validate() lets them be: focus, stop, pupil and
-// camera end, with numbers or with an error that says why.
+// Unrealistic lenses, as large, small, steep and dense as validate() allows: focus, stop, pupil and camera terminate
+// with finite numbers or with an error that states the reason.
 
 #include <cmath>
 #include <string>

@@ -110,7 +110,7 @@ TEST_CASE("a hole from f/0.25 to f/500 lights the film beside the axis as its cl
 }
 
 TEST_CASE("a lens whose entrance pupil lies at infinity takes pictures by the models that have a place for it") {
-    // The stop stands in the focal plane behind a thin lens of 200 mm, and a second lens makes the picture.
+    // The stop is in the rear focal plane of a thin lens of 200 mm, and a second lens forms the image.
     const Glass glass = Glass::constant(1.5);
     const LensSystem lens =
         with_film(lens_of({refracting(100, 0, glass, 30), refracting(0, 200, Glass::air(), 30), stop_plane(20, 4),

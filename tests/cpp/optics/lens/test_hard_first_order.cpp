@@ -157,7 +157,7 @@ TEST_CASE("an afocal system has infinite focal lengths, and no focus or f-number
 
 TEST_CASE("a stop in a focal plane has its pupil at infinity, and the other figures stay finite") {
     for (const double r : {64.0, 77.7, 50.1}) {
-        const double f = r / 0.5168;  // thin, of index 1.5168: what is left of the pupil's inverse distance is rounding
+        const double f = r / 0.5168;  // thin, of index 1.5168: the pupil's inverse distance is only rounding error
         const std::vector<Surface> thin{refracting(r, 0, Glass::constant(1.5168), 10),
                                         refracting(0, f, Glass::air(), 10)};
         std::vector<Surface> behind = thin, before{stop_plane(f, 3)};

@@ -1,4 +1,4 @@
-// Polynomials in place of a lens.
+// Polynomials that approximate a lens.
 
 #include "optics/lens/lens_polynomial.hpp"
 
@@ -44,7 +44,7 @@ TEST_CASE("turned about the axis, a lens makes the same ray, turned") {
     same(turned(ray.at_stop), other.at_stop);
 }
 
-// A ray's slope here is 5e-3 at most, and its seventh power less than what float32 tells apart.
+// A ray's slope here is 5e-3 at most, and its seventh power is below the resolution of float32.
 TEST_CASE("a lens that hardly bends light needs no high powers") {
     LensSystem lens = lens_of(
         {stop_plane(0, 0.5), refracting(1000, 1, Glass::constant(1.5), 5), refracting(-1000, 0, Glass::air(), 5)});

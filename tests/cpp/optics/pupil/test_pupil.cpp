@@ -257,7 +257,7 @@ TEST_CASE("the lens ends the image, whatever the size of the film that it is on"
             lens.stop_semi_diameter = share * open;
             const double edge = Pupil(lens, 21.6).image_radius();
             REQUIRE(edge < 21.6);
-            // A search is done where its steps are a hundred-thousandth, on the dark side.
+            // The search ends on the dark side, at relative steps of 1e-5.
             CHECK(Pupil(lens, 80).image_radius() == about(edge, 3e-5));
             CHECK(Pupil(lens, 1.2 * edge).image_radius() == about(edge, 3e-5));
         }

@@ -1,4 +1,4 @@
-// Rays that meet an asphere without a bracket: only those that cross it once, wherever they come from.
+// Rays for which the search on an asphere needs no bracket: they must cross the asphere once, whatever their origin.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Surfaces that are no conics of revolution: closed forms, and what holds of every hit.
+// Surfaces other than conics of revolution: closed forms, and the laws that hold for every hit.
 
 #include <cmath>
 #include <numbers>
@@ -43,7 +43,7 @@ TracedRay meet(const Surface& surface, Vec3d from, Vec3d towards) {
     return RayTracer(alone(surface), LightDirection::to_film)(from, towards);
 }
 
-/// Every kind of form, none of them of small parts.
+/// One surface of every kind of form, with large coefficients.
 std::vector<Surface> some_freeforms() {
     std::vector<Surface> list;
     const auto add = [&](double radius, const SurfaceForm& form) {

@@ -345,7 +345,7 @@ TEST_CASE("a backward ray on the axis does not meet the far end of a nearly flat
                     CAPTURE(surface.curvature);
                     CAPTURE(bend);
                     CAPTURE(i);
-                    // A crossing in the wrong direction is none, however far along the axis the conic closes again.
+                    // An intersection in the wrong direction does not count, however far away the conic closes again.
                     CHECK(!out.passed(i));
                     CHECK(!one[i]);
                     CHECK(!eight[i]);

@@ -28,7 +28,7 @@ TEST_CASE("each pixel is developed with its own number of samples") {
 }
 
 TEST_CASE("what a pixel has too much of one colour by chance is taken out, and what all have is kept") {
-    // An evenly lit film of 6 lux, of whose light the lens passes a tenth more in red and a tenth less in blue.
+    // A uniform film of 6 lux; the lens passes a tenth more of the light in red and a tenth less in blue.
     constexpr double kChance = 0.1;
     const PixelSum even = {{6600, 6000, 5400}, {100, 0, -100}, 0, 0, 1000, 1000};
     FilmSums film(81, even);

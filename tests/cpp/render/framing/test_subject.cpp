@@ -74,7 +74,7 @@ TEST_CASE("an object of 0.3 m on a floor of 30 m is the subject, however the flo
     const Camera camera = framed(Assembly(plain));
     CHECK(length(camera.pose.look_at_m - Vec3d{4.15, 0.15, -5.85}) < 1e-9);
     // It fills nine tenths of the picture's height, 24 mm at 50 mm: 0.3 m from 0.3 * 50.36 / (0.9 * 24) = 0.7 m, less
-    // what the field narrows near by, in front of its near side. Seen from aside it is wider.
+    // the narrowing of the field at close distance, in front of its near side. From the side it is wider.
     CHECK(eye_z(camera) > -5.7 + 0.6);
     CHECK(eye_z(camera) < -5.7 + 0.9);
 }

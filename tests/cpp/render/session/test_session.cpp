@@ -296,7 +296,7 @@ TEST_CASE("layers catch up with the samples of a picture, and are seen once") {
     session.picture();
     CHECK(session.notes.size() == 2);
 
-    // Half of a layer is none.
+    // A layer that is cancelled half-way does not count.
     std::thread stop;
     session.while_seeing = [&] {
         stop = std::thread([&] { session.cancel(); });
@@ -309,7 +309,7 @@ TEST_CASE("layers catch up with the samples of a picture, and are seen once") {
     CHECK(session.seen.back().first == 0);
     CHECK(session.seen.back().count == 6);
 
-    // Another place is another picture; so is one whose squares were not summed.
+    // Another camera position starts a new picture; so does a picture whose squares were not summed.
     camera.pose.position_m.x += 1;
     session.set(scene, camera, settings);
     session.add(1);
@@ -356,7 +356,7 @@ TEST_CASE("a view that stands still is a new session's picture, whatever lens wa
         CHECK(samples_of_frame() == 2);
     }
     CHECK(count_prepared() == 3);
-    session.set(scene, camera, {.effects = {}});  // what was collected can be looked at
+    session.set(scene, camera, {.effects = {}});  // the accumulated film can still be developed
     CHECK(session.picture().spp == 2);
     CHECK(count_prepared() == 3);
     CHECK(samples_of_frame() == 2);

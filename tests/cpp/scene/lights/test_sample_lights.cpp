@@ -418,7 +418,7 @@ TEST_CASE("kinds of light are chosen with the probabilities of LightKinds, which
             CAPTURE(sky);
             const LightReceiver receiver{{0.2f, 0, 0.1f}, normal};
             const LightKinds kinds = light_kinds(view, SkySampling::apart, receiver);
-            // A dim sky is all the light of what is turned away from the others.
+            // A dim sky is the only light of a surface that faces away from the other lights.
             CHECK((!kinds.environment_is_separate || sky == 1.0f || normal.y < 0));
             check_kinds(tests, view, receiver, kinds, seed++);
             check_kinds(tests, view, receiver, light_kinds(view, SkySampling::chosen, receiver), seed++);

@@ -63,7 +63,7 @@ bool has_narrow_lobe(const Surface& surface) {
     return m.model == MaterialModel::phong ? m.shininess > 100 : m.roughness < 0.4f;
 }
 
-/// Equal areas of the sphere: rings about the normal and sectors; what ends is counted in a bin of its own.
+/// Bins are equal areas of the sphere: rings about the normal and sectors. Samples that end have a bin of their own.
 template <class BsdfT>
 void add_test(ChiSquareTests& tests, const BsdfT& bsdf, bool is_narrow, unsigned seed) {
     constexpr int kRings = 24, kSectors = 24;

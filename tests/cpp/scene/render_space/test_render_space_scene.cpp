@@ -188,7 +188,7 @@ TEST_CASE("slivers have the normal of their double corners, and points on them l
     hold({"Scenes", "normal of slivers", tried, "core", "float32", normal_error, 5e-7, "radians"});
     breaks({"Scenes", "normal of slivers, from float corners", tried, "core", "float32", float_normal_error, 5e-7,
             "radians"});
-    // The ray's direction, its length, their product and the way to the plane, seen under 6 degrees at least.
+    // Roundings of the ray's direction, its length, their product and the distance to the plane, at 6 degrees or more.
     hold({"Scenes", "point on a sliver", tried, "core", "float32", place_error, 8 * 0x1p-24, "of the distance"});
 }
 
@@ -200,7 +200,7 @@ TEST_CASE("a ray from afar meets a small triangle where its corners say") {
     const Hit hit{1e7f, 0, 0.3f, 0.2f};
     const Vec3f way = static_cast<Vec3f>(normalized(expected - from));
     const SurfacePoint point = surface_point<SceneKind::any>(placed.view(), hit, static_cast<Vec3f>(from), way, 0);
-    // Float steps are 1 m along such a ray.
+    // The spacing of floats along this ray is 1 m.
     CHECK(length(static_cast<Vec3d>(point.position) - expected) < 8 * 0x1p-24);
 }
 

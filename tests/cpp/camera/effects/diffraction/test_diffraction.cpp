@@ -1,4 +1,4 @@
-// Diffraction's tables: the light of apertures against closed forms, and what is drawn from them.
+// Diffraction tables: the light of apertures against closed forms, and samples drawn from the tables.
 
 #include <cmath>
 #include <complex>
@@ -86,7 +86,7 @@ TEST_CASE("a circle's light within each ring is Airy's") {
         const auto light = [&](int k) { return share_within(found, k + 1) - share_within(found, k); };
         if (rings < 40 && light(rings) < light(darkest)) darkest = rings;
     }
-    // The light beyond the cells is that of stationary phase, which leaves out what its rings vary by: at the sixth
+    // Light beyond the cells follows from stationary phase, which omits the oscillation of the rings: at the sixth
     // period, 2 / (pi^2 6) times 1 / (12 pi).
     hold({"Effects", "light of a circle within a ring, against Airy's", "60 rings", "core", "float64", worst, 1e-3,
           "of all"});
@@ -94,8 +94,8 @@ TEST_CASE("a circle's light within each ring is Airy's") {
 }
 
 TEST_CASE("cells and edges together have all light") {
-    // Parseval's theorem, but for what the light varies by beyond the cells, which stationary phase leaves out: more
-    // where two edges that are near each other interfere.
+    // Parseval's theorem, except for the oscillation of the light beyond the cells, which stationary phase omits; it is
+    // larger where two edges near each other interfere.
     double simple = std::fabs(diffraction_of({outline(0)}).found_share - 1), obstructed = 0;
     for (int corners = 5; corners <= 9; ++corners)
         simple = std::max(simple, std::fabs(diffraction_of({outline(corners)}).found_share - 1));

@@ -76,10 +76,10 @@ TEST_CASE("cubics give the indices of all lenses") {
         const IndexErrors errors = index_errors(io::read_lens(name), spectrum);
         worst = {std::max(worst.rms, errors.rms), std::max(worst.worst, errors.worst)};
     }
-    // An achromat's lateral colour is a twentieth of what its glasses spread each, and so right to 2%.
+    // An achromat's lateral colour is a twentieth of the dispersion of each of its glasses, and so correct to 2%.
     hold({"Effects", "dispersion from a cubic over the wavelength, rms",
           "all lenses, wavelengths as in a picture under D65", "core", "float32", worst.rms, 1e-3, ""});
-    // At the ends of the spectrum there is next to no light.
+    // The largest error is at the ends of the spectrum, where there is hardly any light.
     hold({"Effects", "index of refraction from a cubic over the wavelength", "the same", "core", "float32", worst.worst,
           1.5e-3, ""});
 }
