@@ -47,7 +47,7 @@ struct Joint {
     }
 };
 
-/// Each pair of dimensions a shuffled and scrambled (0,2)-sequence by itself.
+/// An independent shuffled and scrambled (0,2)-sequence for each pair of dimensions.
 struct Pairs {
     static constexpr const char* name = "(0,2) pairs";
     static Point at(const Place& place) {

@@ -17,7 +17,7 @@ import realcam as rc
 
 
 def photograph(scene: mi.Scene, integrator: mi.SamplingIntegrator, camera: rc.Camera, spp: int) -> np.ndarray:
-    """(H, W, 3) exposure in lux seconds: what rc.render gives of a scene of its own.
+    """Returns the exposure in lux seconds, (H, W, 3), as rc.render does for a realcam scene.
 
     The scene is in metres, its radiances in cd/m^2.
     """

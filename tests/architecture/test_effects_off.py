@@ -1,7 +1,7 @@
 """A disabled effect leaves the GPU's code identical to code without that effect.
 
-The kernel without effects is compiled twice: from the sources, and from a copy out of which the effects were cut, with
-all data that they have in a camera. Both must have the same instructions; only places of arguments may differ.
+The kernel without effects is compiled twice: from the sources, and from a copy from which the effects were removed with
+all their data in the camera. Both must have the same instructions; only the offsets of arguments may differ.
 """
 
 from __future__ import annotations

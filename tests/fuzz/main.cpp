@@ -82,7 +82,7 @@ void save(const Input& input) {
     _exit(3);
 }
 
-/// Asked to stop, it tells how far it came.
+/// Set by SIGINT and SIGTERM: the driver then stops and reports its progress.
 volatile std::sig_atomic_t stopped = 0;
 
 void watch() {

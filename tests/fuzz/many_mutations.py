@@ -1,5 +1,5 @@
-"""Many mutations by a process of its own: one that a signal ends, or that takes too long, leaves the number it was at,
-and the next one goes on behind it.
+"""Runs many mutations in a child process. If a signal or the time limit ends the child, it leaves the index of the
+mutation, and the next child continues behind it.
 
 A fuzz program is `sys.exit(main(__doc__, __file__, Target(...)))`, and is called as
 

@@ -71,7 +71,8 @@ bool same_alone(const LensPath<T>& path, const LensRays<T, kRays>& start, const 
            length(ray.direction[0] - end.direction[i]) == 0;
 }
 
-/// Checks every surface of one trace, with the numbers that the whole trace has between the surfaces.
+/// Traces a block surface by surface and checks the laws at each. The numbers between surfaces are those of a whole
+/// trace.
 template <class T>
 void check_surfaces(const LensPath<T>& path, LensRays<T, kRays>& rays) {
     const LensView<T> lens = path.view();
@@ -98,7 +99,7 @@ void check_surfaces(const LensPath<T>& path, LensRays<T, kRays>& rays) {
     }
 }
 
-/// The same by the kernels, which take each surface for a lens of its own and give unit directions back.
+/// check_surfaces with the kernels, which trace each surface as a separate lens and return unit directions.
 template <class T>
 void check_surfaces(const realcam_kernels& kernels, const LensPath<T>& path, const LensRays<T, kRays>& start) {
     const LensView<T> lens = path.view();

@@ -247,7 +247,7 @@ TEST_CASE("as many frames are under way as the device takes") {
     CHECK_THROWS_AS(view.collected(), InputError);
     CHECK(view.shoot(camera, {.spp = 2, .effects = {}}, ToneCurve::film)->samples() == 2);
     CHECK(view.shoot(camera, {.spp = 3, .effects = {}}, ToneCurve::film)->samples() == 5);
-    // The third has to wait for the first, here until nobody wants to.
+    // The third call has to wait for the first, here until it is cancelled.
     int asked = 0;
     CHECK_THROWS_AS(view.shoot(camera, {.spp = 1, .effects = {}}, ToneCurve::film, [&] { return ++asked < 3; }),
                     Cancelled);
@@ -436,5 +436,5 @@ TEST_CASE("a picture is developed of what was collected elsewhere") {
     CHECK(image.layers[0].numbers == std::vector<std::uint32_t>{3});
     CHECK(double(image.layers[1].values[0]) == doctest::Approx(28.0 / 3));
     CHECK(image.layers[2].values == std::vector<float>{1.5f});
-    CHECK_THROWS_AS(session.picture(), InputError);  // of its own it has none
+    CHECK_THROWS_AS(session.picture(), InputError);  // the session itself has no samples
 }
