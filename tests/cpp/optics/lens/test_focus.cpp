@@ -41,8 +41,7 @@ double rms_spot(const LensSystem& lens, double object_distance, double plane) {
 }
 
 void check_best_focus(const LensSystem& lens) {
-    const double object =
-        lens.focus_distance - lens.film_position();  // the requested distance is from object plane to film
+    const double object = lens.focus_distance - lens.film_position();  // focus distances are measured from the film
     const double best = rms_spot(lens, object, lens.film_distance);
     // The squared spot is a parabola of the plane: its middle lies between two planes that have the same
     // spot. A hundredth of the diffraction-limited depth of focus, 2 lambda N^2, is 0.05 mm at f/5.6 and
