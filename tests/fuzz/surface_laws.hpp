@@ -220,7 +220,7 @@ private:
     }
 
     /// Checks that a ray that clearly intersects a conic is not reported as missed. The rounding of the discriminant
-    /// and of the near cap depends on the distance of the ray's origin; rays for which it may exceed 1/100 are left
+    /// and of the near cap depends on the distance of the ray's origin; rays within 1/100 of either limit are left
     /// out.
     void check_miss(const Crossing& ray) const {
         using Long = long double;
