@@ -4,9 +4,9 @@
 //         build/cpu/librealcam_lens_io.a build/cpu/librealcam_io.a -o /tmp/samplers && /tmp/samplers
 //
 // Film, pupil, light and time are sampled together: a ray leaves the film, passes every surface of the lens, and meets
-// a board with a pattern that moves while the film is exposed, in the half shadow that a disc throws in the light of a
-// square lamp. What is reported is the error of the pixels against many more samples of another seed: its root mean
-// square, and the same after a blur of two pixels, which is what eyes at some distance see of noise.
+// a board with a pattern that moves while the film is exposed, in the penumbra that a disc casts in the light of a
+// square lamp. Reports the error of the pixels against many more samples of another seed: its root mean square, and the
+// same after a blur of two pixels, which models the noise that is visible at some distance.
 
 #include <algorithm>
 #include <array>
@@ -36,7 +36,7 @@ struct Place {
     std::uint32_t pixel, column, row, sample, samples, seed;
 };
 
-/// What the renderer takes.
+/// The renderer's sampler.
 struct Joint {
     static constexpr const char* name = "joint";
     static Point at(const Place& place) {
@@ -47,7 +47,7 @@ struct Joint {
     }
 };
 
-/// Each pair of dimensions a shuffled and scrambled (0,2)-sequence by itself.
+/// An independent shuffled and scrambled (0,2)-sequence for each pair of dimensions.
 struct Pairs {
     static constexpr const char* name = "(0,2) pairs";
     static Point at(const Place& place) {
@@ -133,10 +133,10 @@ struct Sevens {
     }
 };
 
-/// A (0, 2^kBits)-sequence in that base, of which every dimension is a binary matrix: Faure's construction over a field
-/// of 2^kBits elements (A. Ahmed, M. Skopenkov, M. Hadwiger and P. Wonka, "SZ Sequences: Binary-Constructed
-/// (0, 2^q)-Sequences", SIGGRAPH Asia 2024). Digit i of a number is the sum over the index's digits j of
-/// binomial(j, i) a^(j - i), where each dimension has an element a of its own.
+/// Generator matrix of one dimension of a (0, 2^kBits)-sequence in base 2^kBits, as a binary matrix: Faure's
+/// construction over a field of 2^kBits elements (A. Ahmed, M. Skopenkov, M. Hadwiger and P. Wonka, "SZ Sequences:
+/// Binary-Constructed (0, 2^q)-Sequences", SIGGRAPH Asia 2024). Digit i of a sample is the sum over the index's digits
+/// j of binomial(j, i) a^(j - i) times digit j, with a different element a in each dimension.
 template <int kBits, unsigned kModulus>
 class FieldMatrix {
 public:
@@ -232,7 +232,7 @@ struct MortonPairs {
     }
 };
 
-/// A lens and what it sees.
+/// A lens and the board in front of it.
 class Scene {
 public:
     static constexpr int kSide = 32;
@@ -265,11 +265,11 @@ public:
     }
 
 private:
-    /// In shares of the field.
+    /// Light of a point on the board; x and y in units of the field's half width.
     static float board(float x, float y, const Point& u) {
         const float moved = x + 0.05f * u[6];
         const bool is_bright = (static_cast<int>(std::floor(7 * moved)) + static_cast<int>(std::floor(7 * y))) & 1;
-        // The lamp's place as seen past a disc half-way to it.
+        // Point in the plane of a disc half-way between the board and the point on the lamp.
         const float from_x = 0.5f * (x + u[4] - 0.2f), from_y = 0.5f * (y + u[5] - 0.5f);
         const bool is_lit = from_x * from_x + from_y * from_y > 0.04f;
         return (is_bright ? 1.0f : 0.1f) * (is_lit ? 1.0f : 0.05f);

@@ -17,7 +17,7 @@ import realcam as rc
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-PLACES = np.array([(0, 0), (-1, 1), (1, 1), (-1, -1), (1, -1)])  # of stars, as the picture has them
+PLACES = np.array([(0, 0), (-1, 1), (1, 1), (-1, -1), (1, -1)])  # stars in the picture, in units of half_mm
 SPOKES = 24
 LUMINANCE = 1000.0  # cd/m^2
 DPI = 160
@@ -58,15 +58,15 @@ def main() -> None:
 
     distance_m = 3.0
     lens = rc.Lens.load(wanted.lens).stopped_down(wanted.f_number).focused(distance_m)
-    # The stars are where the fields of the study are: half of the film's diagonal away from its middle.
+    # The stars lie at the fields of the study: on the axis, and a quarter of the film's diagonal away from it.
     first_order = lens.first_order()
     half_mm = 0.25 * np.array(lens.film_mm)
     angle_deg = math.degrees(math.atan(math.hypot(*half_mm) / first_order.effective_focal_length_mm))
     along = PLACES * half_mm / math.hypot(*half_mm)
-    # The angle of a field is that of the light, which goes down from a star that is above.
+    # A field angle is the angle of the light, which travels downwards from a star above the axis; hence the sign.
     study = rc.tolerance_study(lens, wanted.grade, wanted.copies, seed=wanted.seed, fields_deg=-angle_deg * along)
     to_pupil_m = distance_m - 1e-3 * (lens.film_position_mm - first_order.entrance_pupil_position_mm)
-    # Of the film; a star has 20 periods per mm at 0.2 mm from its middle.
+    # Side of the film area around each star; a star has 20 periods per mm at 0.2 mm from its centre.
     side_mm = 1.0
     star_m = 0.45e-3 * side_mm * to_pupil_m / (1e-3 * first_order.effective_focal_length_mm)
     scene = target(to_pupil_m * math.tan(math.radians(angle_deg)) * along, star_m, distance_m)
@@ -82,7 +82,7 @@ def main() -> None:
 
 
 def stars(scene, lens, centres_mm, side_mm, distance_m, wanted) -> np.ndarray:
-    """The five stars through a lens, as they lie in the picture, with room between them."""
+    """Pictures of the five stars through a lens, arranged as on the film, with gaps between them."""
     pixels = wanted.pixels
     tile = np.full((3 * pixels, 3 * pixels, 3), GREY)
     # White is 0.44 lux seconds on the axis, 2.2 stops above the middle grey of ISO 100.

@@ -36,7 +36,7 @@ class Pictures(IterableDataset):
 
 
 def batches(pictures: Pictures, size: int) -> Iterator[tuple[np.ndarray, ...]]:
-    """What a DataLoader gives, of numpy's arrays."""
+    """Yields batches as a DataLoader does, as NumPy arrays."""
     batch: list[tuple[np.ndarray, ...]] = []
     for sample in pictures:
         batch.append(sample)

@@ -17,7 +17,7 @@ import realcam as rc
 
 
 def photograph(scene: mi.Scene, integrator: mi.SamplingIntegrator, camera: rc.Camera, spp: int) -> np.ndarray:
-    """(H, W, 3) exposure in lux seconds: what rc.render gives of a scene of its own.
+    """Returns the exposure in lux seconds, (H, W, 3), as rc.render does for a realcam scene.
 
     The scene is in metres, its radiances in cd/m^2.
     """
@@ -63,7 +63,7 @@ def main() -> None:
         exposure_time_s=2,
     )
     exposure = photograph(scene, integrator, camera, arguments.spp)
-    # As on a camera, 10 / ISO lux seconds become a middle grey of 18%.
+    # The exposure scale of a camera: 10 / ISO lux seconds become a middle grey of 18%.
     mi.util.write_bitmap(arguments.output, exposure * np.float32(0.018 * camera.iso), write_async=False)
 
 

@@ -1,8 +1,8 @@
-"""The tiers of tests, one of which `-m laws`, `-m pictures` or `-m browser` chooses.
+"""The tiers of tests: `-m laws`, `-m pictures` or `-m browser` selects one.
 
 laws: optics and light, and the rules of the source; no pictures of scenes, no browser. browser: the lens bench.
-pictures: all else, with those tests of the other files that are marked so. The labels of ctest are the same.
-What is slow for what it shows is marked so besides, and runs with `./run test all` alone.
+pictures: all other files, and tests of laws or browser files that are marked `pictures`. ctest uses the same labels.
+Tests that take long for what they show are also marked `slow`, and only `./run test all` runs them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ LAWS = frozenset(
     """.split()
 )
 
-# Deaths of processes, signals, servers, what stands in pages and examples: minutes, of which one witness each is quick.
+# Tests of dying processes, signals, servers, and of the code in pages and examples. They take minutes; each subject
+# also has one quick test in another file.
 SLOW = frozenset(
     """
     docs_blocks examples gpu_weather hostile_names inputs_stay interrupt notebook numerics_page pickled_states site
@@ -41,7 +42,7 @@ def tier_of(path: Path) -> str:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Files that have none of the tests that `-m laws` or `-m browser` asks for are not read: it takes some seconds."""
+    """Skips files without tests of the tier that `-m laws` or `-m browser` selects: reading them takes some seconds."""
     asked = config.getoption("markexpr")
     is_of_another = collection_path.suffix == ".py" and tier_of(collection_path) != asked
     return True if asked in ("laws", "browser") and is_of_another else None

@@ -1,8 +1,8 @@
 """How far float32 image points are off, for rays over the whole film and pupil of a lens.
 
 A ray starts at a film point, is traced to the scene in float32, and back from there in float64. The distance from
-where it meets the film to where it started is the error that a picture has: the scene is seen in the wrong place by
-as much. The start of the ray is exact, because every number of it is a float32.
+where it meets the film to where it started is the error of the picture: the image is displaced by it. The start of the
+ray is exact, because all its numbers are float32.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import realcam as rc
 LIMIT_UM = 0.08  # 1/50 of a pixel of 4 um, on films up to 24 mm x 36 mm; larger films have larger pixels (limit_um)
 SMALL_FILM_MM = 21.7  # half the diagonal of 24 mm x 36 mm
 
-# The image circle that the lens is made for, where its film is larger. Beyond 110 degrees the image of the 220 degree
-# fisheye runs away: 0.2 mm on the film for 1e-3 in direction and 25 um for 1 um in place, so that the rounding of a few
-# steps, in coordinates of up to 36 mm (half a unit is 0.002 um), comes to some tenths of a micrometre there.
+# The intended image circle of lenses with a larger film. Beyond 110 degrees the image of the 220 degree fisheye
+# is very sensitive: it moves by 0.2 mm on the film for 1e-3 in direction and by 25 um for 1 um in position, so that the
+# rounding of a few steps, in coordinates of up to 36 mm (half a unit is 0.002 um), causes some tenths of a micrometre.
 IMAGE_RADIUS_MM = {"fisheye-6mm-220deg": 10.47}
 BEYOND_UM = 0.25
 
@@ -26,13 +26,13 @@ RAYS_PER_RADIUS = 4_000
 
 
 def limit_um(lens: rc.Lens) -> float:
-    """What float32 may leave of an image point, um: roundings grow with a lens, as pixels do with the film."""
+    """Largest error of an image point allowed in float32, um: rounding grows with the lens, as pixels with the film."""
     return LIMIT_UM * max(1.0, 0.5 * float(np.hypot(*lens.film_mm)) / SMALL_FILM_MM)
 
 
 @dataclass(frozen=True)
 class PupilBoxes:
-    """What film points at these radii see of the pupil lies in these boxes of direction cosines (l, m).
+    """Boxes of direction cosines (l, m) that contain the pupil as seen from film points at these radii.
 
     The film point lies on the +x axis; low and high are (N, 2).
     """
@@ -44,7 +44,7 @@ class PupilBoxes:
 
 @dataclass(frozen=True)
 class Rays:
-    """Rays from the film: lens frame, unit directions. `device`: what traces them, as in Lens.trace."""
+    """Rays from the film: lens frame, unit directions. `device`: the one that traces them, as in Lens.trace."""
 
     origins_mm: np.ndarray
     directions: np.ndarray
@@ -66,7 +66,7 @@ class ImagePointErrors:
     film_radius_mm: np.ndarray
     stop_height: np.ndarray  # 1 at the rim of the wide open stop
     error_um: np.ndarray
-    lost: int  # rays besides these that a rim blocks on their way back
+    lost: int  # number of other rays, which a rim blocks on their return
 
 
 def passes(result: rc.TraceResult) -> np.ndarray:
@@ -131,7 +131,7 @@ def rays_over_film_and_pupil(lens: rc.Lens, seed: int = 1) -> Rays:
 
 
 def back_to_film(lens: rc.Lens, out: rc.TraceResult) -> tuple[np.ndarray, np.ndarray]:
-    """Where rays that went to the scene meet the film again in float64 (N, 2), and which of them do."""
+    """Traces rays from the scene back in float64. Returns their film points (N, 2) and which rays reach the film."""
     back = lens.trace(out.origins_mm, -out.directions, start="scene", dtype="float64")
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = back.directions[:, :2] / back.directions[:, 2:]

@@ -1,4 +1,4 @@
-"""Whether a ray passes a lens: where float32 decides otherwise than float64, and how near to an edge that is.
+"""Rays that pass a lens in float32 but not in float64, or the reverse, and their distance from an edge.
 
 An edge is a rim, a hole, the rim of the stop, the critical angle of total internal reflection, or a ray that grazes a
 surface. Nearness is relative: 1e-6 is a millionth of the rim's radius, or of the sine of the angle.
@@ -19,15 +19,15 @@ RAYS_PER_PAIR = 12
 
 
 def decided_otherwise(lens: rc.Lens, rays: Rays) -> np.ndarray:
-    """Which rays pass in float32 and not in float64, or the other way round."""
+    """Mask of the rays that pass in only one of float32 and float64."""
     return passes(rays.trace(lens, "float32")) != passes(rays.trace(lens, "float64"))
 
 
 def rays_at_edges(lens: rc.Lens, seed: int = 2) -> Rays:
     """Rays on both sides of edges, 1e-8 to 1e-3 away in direction cosines.
 
-    Between two rays of one film point, of which one passes, an edge is found by bisection in float64; so whatever ends
-    rays in this lens is met.
+    An edge is found by bisection in float64 between two rays of one film point, only one of which passes; so every kind
+    of edge that ends rays in this lens occurs.
     """
     random = np.random.default_rng(seed)
     radii, cosines = sample_boxes(pupil_boxes(lens), PAIRS_PER_RADIUS, random)
@@ -55,7 +55,7 @@ def rays_at_edges(lens: rc.Lens, seed: int = 2) -> Rays:
 
 
 def distance_to_edge(lens: rc.Lens, rays: Rays) -> np.ndarray:
-    """Of rays on which float32 and float64 disagree: from the edge at which one of the two ends the ray."""
+    """For rays on which float32 and float64 disagree: relative distance from the edge at which one ends the ray."""
     single, double = rays.trace(lens, "float32"), rays.trace(lens, "float64")
     status = np.where(passes(double), single.status, double.status)
     ended = np.where(passes(double), single.surface_index, double.surface_index)

@@ -60,7 +60,7 @@ def experiment(device: str) -> Experiment:
 
 
 def _lens_at(magnification: float) -> Lens:
-    """The double Gauss, stopped down and focused so that what is in focus is so many times smaller on the film."""
+    """The double Gauss, stopped down and focused at this lateral magnification (size on the film over object size)."""
     lens = Lens.load("double-gauss-50mm").stopped_down(F_NUMBER)
     data = lens.first_order()
     f = data.effective_focal_length_mm
@@ -104,7 +104,10 @@ def _variance(profile: np.ndarray) -> float:
 
 
 def _range_text(offsets: np.ndarray, diameters: np.ndarray) -> str:
-    """Where a line through the diameters of either side, near the circle of confusion, reaches it."""
+    """The depth of field and its limits, at which lines fitted to the diameters reach the circle of confusion.
+
+    Each side has its own line, fitted to the diameters near the circle of confusion.
+    """
     ends = []
     for side in (offsets < 0, offsets > 0):
         near_circle = side & (diameters > 0.5 * CIRCLE_MM) & (diameters < 2 * CIRCLE_MM)

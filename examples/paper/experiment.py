@@ -1,4 +1,4 @@
-"""What an experiment brings to the page."""
+"""Experiments as the page shows them: text, figures, and a table of the paper's numbers beside the measured ones."""
 
 from __future__ import annotations
 

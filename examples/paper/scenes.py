@@ -18,7 +18,7 @@ def stars(places_m: Sequence[tuple[float, float, float]], side_m: Sequence[float
 
 
 def grid_board(middle_m: tuple[float, float, float], width_m: float, cells: int, radiance: float = 1e4) -> Scene:
-    """A luminous square, white with black lines between so many cells."""
+    """A luminous white square, divided by black lines into cells x cells cells."""
     half = width_m / 2
     corners = np.array(middle_m) + half * np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
     uvs = cells * np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])

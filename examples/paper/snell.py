@@ -1,4 +1,4 @@
-"""Equation 5: refraction in vector form, as it is printed and as it is right."""
+"""Equation 5: refraction in vector form, as printed in the paper and corrected."""
 
 from __future__ import annotations
 

@@ -85,7 +85,7 @@ def photograph(camera: rc.Camera, spp: int, seed: int = 0) -> np.ndarray:
 exposure = photograph(camera, spp=48)
 
 # %%
-# 10 / ISO lux seconds are middle grey, 18% of white. The rest is sRGB's curve, roughly.
+# 10 / ISO lux seconds are middle grey, 18% of white. The exponent 1 / 2.2 approximates sRGB's transfer curve.
 
 figure, axes = plt.subplots(figsize=(7, 4.7), layout="constrained")
 axes.imshow(np.clip(0.018 * camera.iso * exposure, 0, 1) ** (1 / 2.2))

@@ -1,4 +1,4 @@
-"""The rules of the house: which folder of cpp/ may include which, and what the core must not know."""
+"""Include rules of cpp/: the folders that each folder may include, and the libraries that the core must not use."""
 
 import re
 from collections.abc import Iterable
@@ -11,7 +11,7 @@ CPP = Path(__file__).resolve().parents[2] / "cpp"
 CORE = ("math", "optics", "camera", "scene", "render")
 BACKENDS = ("embree", "cuda")
 
-# Folder -> the folders that it may include, besides itself and the headers of cpp/ itself.
+# Folder -> other folders that it may include. Every folder may include itself and the headers directly in cpp/.
 MAY_INCLUDE = {
     "": set(),
     "math": set(),
@@ -35,11 +35,11 @@ MAY_INCLUDE = {
     "app": {*CORE, *BACKENDS, "plan", "devices", "denoise", "io", "shot", "image_io"},
 }
 
-# The folders within a folder, from the one that needs none of the others upwards. An entry with a suffix names
-# files that lie elsewhere than the folder that they are in.
+# Layers of a folder's subfolders, lowest first: each may include only itself and those before it. An entry with a file
+# suffix moves files to another layer than that of their folder.
 ORDER = {
-    # Views, which kernels read, hold one another: the camera's those of its effects. So they lie below the values and
-    # the code of all rooms, in whichever room they are.
+    # Views, which kernels read, contain one another: the camera's view contains those of its effects. So they form the
+    # lowest layer, whichever folder they are in.
     "camera": (
         "*_view.hpp effects/effect_views.hpp effects/effects.hpp models/pixel_pupil.hpp",
         "film",
@@ -57,7 +57,7 @@ ORDER = {
     "io": ("files", "text", "lens", "lens/formats", "sensor", "scene", "mesh", "gltf", ""),
 }
 
-# A device runs these and what they include, so that they neither own memory nor raise errors.
+# Files that devices run, with the files that they include: they must neither own memory nor throw.
 RUN_BY_DEVICES = ("embree/kernels.cpp", "bvh/traverse_scene.hpp")
 
 NOT_IN_CORE = {
@@ -85,7 +85,7 @@ def folder_of(path: Path) -> str:
     return parts[0] if len(parts) > 1 else ""
 
 
-# Traversal runs on every device; what builds its tree is a host library.
+# The headers of bvh/ (traversal) run on every device; its sources, which build the tree, are a host library.
 CORE_SOURCES = [
     path for path in SOURCES if folder_of(path) in {"", *CORE} or (folder_of(path) == "bvh" and path.suffix == ".hpp")
 ]
@@ -116,7 +116,7 @@ def included_by(path: Path) -> list[Path]:
 
 
 def uses(paths: Iterable[Path], pattern: str, meaning: str) -> list[str]:
-    """What a message says of each place where the code of one of `paths` matches."""
+    """One line "file:line meaning: match" for each match of `pattern` in the code of `paths`."""
     return [
         f"{name_of(path)}:{code_of(path).count(chr(10), 0, match.start()) + 1} {meaning}: {match.group()}"
         for path in paths

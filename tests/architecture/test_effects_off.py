@@ -1,7 +1,7 @@
-"""An effect that is switched off leaves the GPU's code as if it did not exist.
+"""A disabled effect leaves the GPU's code identical to code without that effect.
 
-The kernel without effects is compiled twice: from the sources, and from a copy out of which the effects were cut, with
-all data that they have in a camera. Both must have the same instructions; only places of arguments may differ.
+The kernel without effects is compiled twice: from the sources, and from a copy from which the effects were removed with
+all their data in the camera. Both must have the same instructions; only the offsets of arguments may differ.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ namespace realcam::render_kernel_detail {
 template __global__ void render<LensKind::plain, SceneKind::plain, 0, false>(const __grid_constant__ RenderJob, int);
 }
 """
-# What is cut out of which file: each pattern must be found once.
+# File -> (pattern, replacement) pairs that remove the effects from it. Each pattern must match exactly once.
 CUTS = {
     "camera/effects/effect_views.hpp": [
         (r"    Effects effects;.*?\n\n", ""),

@@ -29,9 +29,9 @@ def modules_of(root: Path) -> dict[str, Path]:
 
 
 def imported_by(name: str, path: Path, modules: dict[str, Path]) -> set[str]:
-    """What a module imports of `modules`, wherever it does: in functions and for type checkers, too.
+    """The members of `modules` that a module imports, including imports in functions and for type checkers.
 
-    A package that is imported on the way to one of its modules does not count, because all would need `realcam` then.
+    Parent packages that an import loads implicitly do not count, because otherwise every module would need `realcam`.
     """
     package = name.split(".") if path.stem == "__init__" else name.split(".")[:-1]
     found = set()

@@ -1,5 +1,5 @@
 #pragma once
-// Meshes and rays for the tests of the BVH, and what is true of them in double precision.
+// Meshes and rays for the tests of the BVH, and reference intersections in double precision.
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +89,7 @@ inline Mesh potato(int rings, int sectors, Vec3f middle, float radius, float bum
     return mesh;
 }
 
-// Triangles whose sizes and places span orders of magnitude, all of which a ray from the corner may meet.
+// Triangles whose sizes and positions span orders of magnitude; a ray from the corner may hit any of them.
 inline Mesh many_sizes(int count, double orders, std::uint32_t seed) {
     BvhDraw draw(seed);
     Mesh mesh;
@@ -107,7 +107,7 @@ struct ExactHit {
     double margin = 0;  // least barycentric: how far inside the triangle, or outside if negative
 };
 
-// One triangle in double precision, Moller and Trumbore's way: nothing in common with the routine under test.
+// Intersection with one triangle in double precision, by Moller and Trumbore: independent of the routine under test.
 inline ExactHit exact_hit(const Mesh& mesh, std::size_t triangle, const BvhRay& ray) {
     const std::uint32_t* corner = mesh.triangles[triangle].vertices;
     const auto a = static_cast<Vec3d>(mesh.positions[corner[0]]);
@@ -126,8 +126,8 @@ inline ExactHit exact_hit(const Mesh& mesh, std::size_t triangle, const BvhRay& 
     return hit;
 }
 
-// What float corners relative to the ray's origin may cost, as a share of the barycentrics and of the distance: 16
-// roundings of the farthest corner's distance, over the triangle's smallest height as the ray sees it, or the cosine.
+// Error bounds of the barycentrics and of the distance due to float corners relative to the ray's origin: 16 roundings
+// of the farthest corner's distance, over the triangle's smallest height projected along the ray, or over the cosine.
 struct Uncertainty {
     double barycentric, distance;
 };
@@ -145,7 +145,8 @@ inline Uncertainty uncertainty(const Mesh& mesh, std::size_t triangle, const Bvh
     return {rounding * longest / seen, rounding * length(area) / seen};
 }
 
-// A ray against every triangle in double precision. False where the answers differ by more than float corners explain.
+// Compares traversal with an intersection of every triangle in double precision. False if the results differ by more
+// than float corners explain.
 inline bool agrees(const Mesh& mesh, const WideBvhView& bvh, const BvhRay& ray) {
     const Hit hit = closest_hit(bvh, ray.origin, ray.direction, ray.far);
     const double unit = length(static_cast<Vec3d>(ray.direction)), far = static_cast<double>(ray.far);
@@ -157,7 +158,7 @@ inline bool agrees(const Mesh& mesh, const WideBvhView& bvh, const BvhRay& ray) 
         const Uncertainty may = uncertainty(mesh, hit.triangle, ray);
         distance = static_cast<double>(hit.distance);
         if (!(distance >= 0 && distance < far)) return false;
-        // Where the triangle is seen from its edge, nothing but a hit's place in it can be said.
+        // If the triangle is seen edge-on, its barycentrics and distance are too uncertain to be checked.
         if (may.barycentric < 0.5) {
             if (exact.margin < -may.barycentric) return false;
             if (std::fabs(distance - exact.distance) * unit > may.distance) return false;
@@ -165,7 +166,7 @@ inline bool agrees(const Mesh& mesh, const WideBvhView& bvh, const BvhRay& ray) 
             if (std::fabs(static_cast<double>(hit.v) - exact.v) > may.barycentric) return false;
         }
     }
-    // No triangle that is surely met lies surely nearer.
+    // No triangle may be hit and be nearer by more than the uncertainties.
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const ExactHit exact = exact_hit(mesh, i, ray);
         if (!(exact.margin > 0)) continue;

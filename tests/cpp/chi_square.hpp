@@ -1,5 +1,5 @@
 #pragma once
-// Pearson's chi-square test of samples against a density that is integrated by quadrature, and what it needs.
+// Pearson's chi-square test of samples against a density that is integrated by quadrature, with its helpers.
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -40,7 +40,7 @@ private:
     std::mt19937 engine_;
 };
 
-/// What a warp of the unit square must bear: its edges, and the numbers beside them.
+/// Inputs that a warp of the unit square must handle: its edges, its centre, and numbers just inside the edges.
 inline std::vector<Vec2f> extreme_inputs() {
     std::vector<Vec2f> all;
     for (const float x : {0.0f, 0x1p-24f, 0.5f, 0x1.fffffcp-1f, 0x1.fffffep-1f})
@@ -150,7 +150,7 @@ public:
         samples_ += samples;
         bins_ += static_cast<double>(expected.size());
         ++tests_;
-        // The density is one: what its integral lacks, quadrature has lost.
+        // The density integrates to 1: the difference of `total` from it is the error of the quadrature.
         total_error_ = std::max(total_error_, std::fabs(total / samples - 1));
         const double p = outliers > 0 ? 0 : p_value(expected, counts);
         worst_ = std::max(worst_, -std::log10(std::max(p, 1e-300)));

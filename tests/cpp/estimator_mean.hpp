@@ -21,7 +21,7 @@ struct Mean {
     }
     double value() const { return sum / count; }
     double standard_error() const { return std::sqrt(std::max(0.0, squares / count - value() * value()) / count); }
-    /// In standard errors; where there is no scatter at all, 1e-6 stands for the roundings.
+    /// Error in units of the standard error, which is at least 1e-6 of the truth, for rounding.
     double off(double truth) const {
         return std::fabs(value() - truth) / std::max(standard_error(), 1e-6 * std::fabs(truth));
     }

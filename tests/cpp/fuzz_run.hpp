@@ -15,7 +15,7 @@ inline std::string count_of(std::uint64_t n) {
     return text;
 }
 
-/// Runs a target until so many are counted; the broken invariants.
+/// Runs a target until the counter `counts` reaches `wanted`. Returns the number of broken invariants.
 inline double run_target(fuzz::Target target, std::uint64_t fuzz::Findings::* counts, std::uint64_t wanted) {
     fuzz::Findings& all = fuzz::findings();
     all = {};
@@ -26,10 +26,10 @@ inline double run_target(fuzz::Target target, std::uint64_t fuzz::Findings::* co
     return static_cast<double>(all.broken);
 }
 
-/// Files that a target has mutated, of a kind: they become what they should be, or an error.
+/// Mutates files of one kind: each must be read as a valid value, or refused with an error.
 inline void hold_mutated_files(const char* kind, fuzz::Target target) {
     const double broken = run_target(target, &fuzz::Findings::files, 150);
-    CHECK(fuzz::findings().files_read > 5);  // it is not all refused at the door
+    CHECK(fuzz::findings().files_read > 5);  // the checks must get past the refusals
     hold({"Scenes", std::string("mutated files that end in anything but what they should be or an error: ") + kind,
           std::to_string(fuzz::findings().files) + " files", "core", "float64", broken, 0, "files"});
 }

@@ -12,19 +12,19 @@
 namespace realcam::test {
 
 struct Measurement {
-    std::string section;  ///< of the page: Surfaces, Rays, Lenses, Scenes, Sums, Iteration, Bundled lenses, Samplers
+    std::string section;  ///< section of the page: Surfaces, Rays, Lenses, Scenes, Sums, Iteration, Bundled lenses, ...
     std::string what;  ///< the hard case, in a few words
-    std::string tried;  ///< how many of what
-    std::string backend;  ///< "core" where no backend is at work
+    std::string tried;  ///< number and kind of the cases
+    std::string backend;  ///< "core" if no backend is involved
     std::string number_type;  ///< float32, float64
     double worst;  ///< the largest error found
-    double limit;  ///< that it is held to
-    std::string unit;  ///< of both
+    double limit;  ///< largest error allowed
+    std::string unit;  ///< of `worst` and `limit`
 };
 
 namespace measurement_detail {
 
-/// As Python reads it.
+/// JSON number in the spelling of Python's json module, which has NaN and Infinity.
 inline std::string json_number(double value) {
     if (std::isnan(value)) return "NaN";
     if (std::isinf(value)) return value > 0 ? "Infinity" : "-Infinity";

@@ -1,5 +1,5 @@
 #pragma once
-// What the pupil tests need: whether a direction lies in the region that is sampled, and many rays at once.
+// Helpers of the pupil tests: a test whether a direction lies in the sampled region, and traces of many rays at once.
 
 #include <cmath>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace realcam::test {
 
-/// A lens in a state of its rings, with words for it.
+/// A lens at one aperture and focus setting, and a description of the setting.
 struct LensState {
     LensSystem lens;
     bool is_open;

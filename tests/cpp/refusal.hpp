@@ -1,5 +1,5 @@
 #pragma once
-// What the user is told when an input is refused.
+// Messages for rejected inputs.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace realcam::test {
 
-/// The message of the error that f throws: an InputError, or an error of the kind that is named.
+/// Message of the error that f throws: an InputError, or an error of the type `Refusal`.
 template <class Refusal = InputError, class F>
 std::string message_of(F&& f) {
     try {

@@ -39,7 +39,7 @@ private:
     fs::path path_;
 };
 
-// Pictures of one colour: what the reader was asked for stays in `asked`.
+// Image reader that returns one pixel of a fixed colour. `asked` records the names of the images requested.
 struct Reader {
     std::vector<std::uint8_t> pixel = {255, 128, 0, 255};
     std::vector<std::string> asked;

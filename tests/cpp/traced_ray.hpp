@@ -20,7 +20,7 @@ struct TracedRay {
     int surface_index;
 
     bool passed() const { return status == RayStatus::ok; }
-    /// Where the ray, as a straight line, crosses the plane at z.
+    /// Intersection of the ray, as a straight line, with the plane at z.
     Vec3d at(double z) const { return origin + ((z - origin.z) / direction.z) * direction; }
 };
 
@@ -101,7 +101,7 @@ inline Surface stop_plane(double thickness, double semi_diameter) {
     return s;
 }
 
-/// Surfaces as a lens that is wide open, whether or not it could be made: tests trace what rays do there.
+/// Wide-open lens of these surfaces, which may overlap, as tests also trace rays through impossible lenses.
 inline LensSystem lens_of(std::vector<Surface> surfaces) {
     LensSystem lens;
     lens.name = "test";
@@ -111,8 +111,8 @@ inline LensSystem lens_of(std::vector<Surface> surfaces) {
     return lens;
 }
 
-/// A paraboloid mirror of focal length f with its stop at the vertex, and the film `defocus` mm behind the focus on the
-/// light's way.
+/// A paraboloid mirror of focal length f with its stop at the vertex, and the film `defocus` mm behind the focus along
+/// the light's direction.
 inline LensSystem paraboloid(double f, double radius, double defocus = 0) {
     Surface mirror = refracting(-2 * f, 0, Glass::air(), 1.01 * radius);
     mirror.type = SurfaceType::mirror;

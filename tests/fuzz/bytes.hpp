@@ -11,8 +11,8 @@
 
 namespace realcam::fuzz {
 
-/// Where the bytes end, numbers go on as a hash of all of them: a short input is a whole lens with all its rays, and a
-/// search that changes one byte changes little before that place.
+/// Draws numbers from fuzz bytes. After the last byte, numbers are hashes of all bytes: a short input still describes a
+/// whole lens with all its rays, and a search that changes one byte changes little before that byte's position.
 class Bytes {
 public:
     Bytes(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {

@@ -1,5 +1,5 @@
 #pragma once
-// A lens from fuzz bytes: 1 to 100 surfaces, of which as many as the input wants are hard cases.
+// A lens drawn from fuzz bytes: 1 to 100 surfaces; the input decides how many of them are hard cases.
 
 #include <algorithm>
 
@@ -10,11 +10,11 @@
 namespace realcam::fuzz {
 
 struct LensStyle {
-    double size = 10;  ///< of its semi-diameters, mm
-    int hard = 0;  ///< of 256 choices, how many are a hard case rather than a number that lenses have
+    double size = 10;  ///< scale of the lens's semi-diameters, mm
+    int hard = 0;      ///< out of 256 choices, the number that are hard cases rather than values of usual lenses
 };
 
-/// Largest curvature of a conic that reaches the rim: there the surface stands upright.
+/// Largest curvature of a conic that reaches the rim: the surface is parallel to the axis there.
 inline double hemisphere_curvature(double rim, double conic) {
     return conic > -1 ? 1 / (rim * std::sqrt(1 + conic)) : 1e3 / rim;
 }
@@ -141,7 +141,7 @@ inline LensSystem draw_lens(Bytes& in) {
     const int bending = limit <= 4 ? limit : 1 + in.below(limit);
 
     LensSystem lens;
-    lens.allow_overlap = true;  // rays through what nobody can make must end too
+    lens.allow_overlap = true;  // rays through impossible lenses must end too
     for (int i = 0; i < bending; ++i) lens.surfaces.push_back(draw_surface(in, style));
     if (bending > 1 && in.chance(48)) {
         const int first = in.below(bending - 1), second = first + 1 + in.below(bending - 1 - first);
@@ -161,7 +161,7 @@ inline LensSystem draw_lens(Bytes& in) {
     lens.surfaces.back().thickness = 0;
     lens.film_distance = draw_thickness(in, style) + 1e-3 * style.size;
     lens.stop_semi_diameter = lens.stop().clear_semi_diameter * (in.chance(64) ? in.unit() : 1.0);
-    // Rarely: to find the blades' place takes as long as a thousand rays.
+    // Rare, because placing the blades takes as long as a thousand rays.
     if (in.chance(1)) lens.iris = {3 + in.below(22), in.unit(), in.between(-10, 10)};
     if (in.chance(8)) spoil(in, lens);
     return lens;

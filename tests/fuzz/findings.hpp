@@ -1,6 +1,6 @@
 #pragma once
-// What a fuzz target found. Under libFuzzer the first finding ends the process, as its users expect; the driver counts
-// them by kind and goes on.
+// Findings of a fuzz target. Under libFuzzer the first finding ends the process, as its users expect; the driver counts
+// findings by kind and continues.
 
 #include <cstdarg>
 #include <cstdint>
@@ -18,7 +18,7 @@ struct Findings {
         std::string first;  ///< the numbers of the first case
     };
 
-    std::uint64_t rays = 0;   ///< traced: each number type counts
+    std::uint64_t rays = 0;  ///< traced: each number type counts
     std::uint64_t passed = 0;  ///< of these left their lens on the far side
     std::uint64_t files = 0, files_read = 0;
     std::uint64_t pupil_samples = 0, cameras = 0, cameras_made = 0, camera_rays = 0;

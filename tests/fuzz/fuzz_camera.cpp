@@ -1,5 +1,5 @@
-// Fuzz target: cameras with absurd dials, and pupil tables asked at absurd film points. A camera is refused with an
-// InputError, or its rays are finite, of unit length, and weigh nothing or more.
+// Fuzz target: cameras with absurd settings, and pupil tables at absurd film points. A camera is refused with an
+// InputError, or its rays are finite and of unit length, with weights of at least 0.
 
 #include <memory>
 #include <vector>

@@ -223,7 +223,7 @@ END 4
 CFG NEW
 )";
 
-/// A lens file of any format, and the name that says which.
+/// Returns a lens file of any format. `name`: receives a file name with the format's extension.
 std::string seed(Bytes& in, std::string& name) {
     const std::span<const io::BundledFile> files = io::bundled_lens_files();
     const std::string bundled(files[static_cast<std::size_t>(in.byte()) % files.size()].name);

@@ -37,7 +37,7 @@ struct Case {
     LightDirection way;
     const RayBlock& rays;
     const realcam_kernels& kernels;
-    bool valid;  ///< else the lens is one that nobody can build, and only the end of the trace is asked for
+    bool valid;  ///< false for a lens that cannot be built; then the trace only has to end
 };
 
 template <class T>
@@ -82,7 +82,7 @@ void check_no_record(const Case& test, const LensPath<T>& path, const BlockResul
         const bool passed = no_record.status[i] == 0;
         Vec3d from = test.rays.origin[i];
         from.z -= path.entry_position;
-        // Farther ones are first brought near, which each instruction set rounds in its own way.
+        // Farther origins are first moved near the lens, which each instruction set rounds differently.
         if (!(length(from) <= path.entry_reach)) continue;
         if (passed != (out.status[i] == 0)) {
             say<T>("a record changes whether a ray passes", test, out, i, no_record.status[i]);
@@ -100,7 +100,7 @@ void check_no_record(const Case& test, const LensPath<T>& path, const BlockResul
     }
 }
 
-/// Both from one compilation, because each instruction set rounds in its own way.
+/// Uses the kernels of the same instruction set, because each instruction set rounds differently.
 void trace_without_record(const Case& test, const LensPath<float>& path, LensRays<float, kRays>& rays, BlockResult&) {
     const LensView<float> view = path.view();
     test.kernels.trace_block(&view, &rays);
@@ -152,7 +152,7 @@ bool passes_validation(const LensSystem& lens) {
     }
 }
 
-/// What LensPath takes for granted of any lens.
+/// True if the lens meets LensPath's preconditions.
 bool can_be_traced(const LensSystem& lens) {
     try {
         lens.indices(lens.wavelength_nm);

@@ -14,7 +14,7 @@ from many_mutations import Target, main
 
 
 def read(case: tuple[Any, ...]) -> tuple[str, str]:
-    """What became of it ("read", "refused" or "broken"), and why that is broken."""
+    """Reads a case. Returns "read", "refused" or "broken", and the reason if it is broken."""
     import realcam as rc
     from look_at import look_at
     from realcam import pickling
@@ -39,7 +39,7 @@ def read(case: tuple[Any, ...]) -> tuple[str, str]:
 
 
 def seeds() -> list[tuple[Any, ...]]:
-    """What pickles of all kinds hold: the arguments of `restored`, or the fields of a value that is Python's."""
+    """Contents of pickles of all kinds: the arguments of `restored`, or the state of a class written in Python."""
     from picklable_values import ALL_MAKERS
     from realcam import pickling
 

@@ -84,7 +84,7 @@ def case_of(pictures: list[Picture], seed: int, number: int) -> Picture:
 def mutate(data: bytearray, draw: random.Random) -> None:
     if not data:
         data += b"\n"
-    # Half of them in the header, where most of what a reader trusts stands.
+    # Half of the mutations are in the header, which has most of the fields that a reader trusts.
     at = draw.randrange(min(len(data), 400) if draw.random() < 0.5 else len(data))
     length = draw.randint(1, 32)
     other = draw.randrange(len(data))

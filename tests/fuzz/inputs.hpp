@@ -30,11 +30,11 @@ inline double cpu_seconds() {
 
 struct Run {
     std::uint64_t inputs = 0;
-    double seconds = 0, slowest = 0;  ///< of processor time: all, and of one input
+    double seconds = 0, slowest = 0;  ///< processor time of all inputs, and of the slowest one
     Input first_broken;
 };
 
-/// Calls the target until `enough`. `before` sees each input first, so that one that never ends is known.
+/// Calls the target until `enough()`. `before` receives each input first, so that an input that hangs is known.
 template <class Enough, class Before>
 Run run_inputs(Target target, std::uint32_t seed, Enough&& enough, Before&& before) {
     Run run;

@@ -1,4 +1,4 @@
-"""Uses a value that came out of a pickle in all the ways that a user may: what was let in must not break anything."""
+"""Uses an unpickled value in every way that a user may: a value that was accepted must not break anything."""
 
 from __future__ import annotations
 

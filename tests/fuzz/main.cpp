@@ -32,9 +32,9 @@ using namespace realcam::fuzz;
 struct NamedTarget {
     const char* name;
     Target target;
-    std::uint64_t Findings::* counts;  ///< what is counted up to the wanted number
+    std::uint64_t Findings::* counts;  ///< counter that is compared with the requested number
     const char* unit;
-    long hang_seconds;  ///< in user mode, for one input: a thousand times what they take. The kernel takes seconds more
+    long hang_seconds;  ///< in user mode, for one input: a thousand times the usual time. The kernel takes seconds more
                         ///< to clear what a decoder allocates and a sanitizer touches.
 };
 #if defined(REALCAM_FUZZ_FILES)
@@ -82,7 +82,7 @@ void save(const Input& input) {
     _exit(3);
 }
 
-/// Asked to stop, it tells how far it came.
+/// Set by SIGINT and SIGTERM: the driver then stops and reports its progress.
 volatile std::sig_atomic_t stopped = 0;
 
 void watch() {

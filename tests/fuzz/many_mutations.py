@@ -1,5 +1,5 @@
-"""Many mutations by a process of its own: one that a signal ends, or that takes too long, leaves the number it was at,
-and the next one goes on behind it.
+"""Runs many mutations in a child process. If a signal or the time limit ends the child, it leaves the index of the
+mutation, and the next child continues behind it.
 
 A fuzz program is `sys.exit(main(__doc__, __file__, Target(...)))`, and is called as
 
@@ -29,17 +29,17 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-LONGEST_S = 60  # a thousand times what one takes
+LONGEST_S = 60  # a thousand times the usual time of a case
 
 
 @dataclass(frozen=True)
 class Target:
-    """What is fuzzed. A case is anything that can be pickled."""
+    """A fuzz target. A case is any picklable value."""
 
     name: str
     seeds: Callable[[], list[Any]]
-    case_of: Callable[[list[Any], int, int], Any]  # of seeds, seed and number
-    read: Callable[[Any], tuple[str, str]]  # what became of it ("read", "refused" or "broken"), and why that is broken
+    case_of: Callable[[list[Any], int, int], Any]  # arguments: seeds, random seed, index
+    read: Callable[[Any], tuple[str, str]]  # "read", "refused" or "broken", and the reason if it is broken
 
 
 class CoreFinder(importlib.abc.MetaPathFinder):
@@ -66,7 +66,7 @@ def finding(target: Target, folder: Path, seed: int, number: int) -> Path:
 
 
 def work(target: Target, first: int, last: int, seed: int, folder: Path) -> None:
-    """Prints what became of all: a line that a program reads."""
+    """Reads the cases from `first` to `last`. Prints their outcomes as a line for another program to parse."""
     cases = target.seeds()
     counts: Counter[str] = Counter()
     with (folder / f"at-{seed}").open("wb", buffering=0) as at:

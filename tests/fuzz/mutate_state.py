@@ -1,4 +1,4 @@
-"""Changes to what a pickle of realcam's holds: tuples in tuples of numbers, bytes, arrays and None."""
+"""Mutations of the contents of realcam's pickles: nested tuples of numbers, bytes, arrays and None."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ OTHERS = (None, True, False, (), (1,), [], {}, "text", b"\xff\xfe", b"", 3.5, -7
 
 
 def places(state: Any, path: Path = ()) -> Iterator[Path]:
-    """Where something stands in it, itself among them."""
+    """Yields the path of every item in nested tuples, including the empty path of `state` itself."""
     yield path
     if isinstance(state, tuple):
         for i, item in enumerate(state):
@@ -109,7 +109,7 @@ def _other_array(item: np.ndarray, draw: random.Random) -> np.ndarray:
         return np.asfortranarray(array) if draw.random() < 0.5 else array[..., ::-1]
     if array.size == 0:
         return np.full((3, 8), 255, np.uint8)
-    # Numbers within bytes: whole ones and fractions of all sizes, where one may stand.
+    # Numbers within bytes: integers and floats of all sizes, at positions where one may be.
     flat = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
     for _ in range(draw.choice((1, 1, 3))):
         kind, values = draw.choice((("<i4", WHOLE[1:12]), ("<i8", WHOLE[:15]), ("<f8", REAL), ("<f4", REAL[:10])))

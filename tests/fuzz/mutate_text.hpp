@@ -20,7 +20,7 @@ inline Span pick(Bytes& in, const std::vector<Span>& spans) {
     return spans[in.word() % spans.size()];
 }
 
-/// Runs of what a number is written with.
+/// Spans of characters that a number may consist of, with at least one digit.
 inline std::vector<Span> numbers_of(const std::string& text) {
     std::vector<Span> found;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -73,7 +73,7 @@ inline std::string number_or_not(Bytes& in) {
     return text;
 }
 
-/// Words, and what stands between quotes.
+/// Spans of words, and of text between quotes.
 inline std::vector<Span> words_of(const std::string& text) {
     std::vector<Span> found;
     const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
@@ -85,7 +85,7 @@ inline std::vector<Span> words_of(const std::string& text) {
     return found;
 }
 
-/// What stands between brackets, with them.
+/// Spans of the bracketed parts of a text, including the brackets.
 inline std::vector<Span> brackets_of(const std::string& text) {
     std::vector<Span> found;
     std::vector<std::size_t> open;
@@ -98,7 +98,7 @@ inline std::vector<Span> brackets_of(const std::string& text) {
     return found;
 }
 
-/// Changes a text in one way of many.
+/// Applies one of many random changes to a text.
 inline void mutate_text(Bytes& in, std::string& text) {
     if (text.empty()) text = "\n";
     switch (in.below(16)) {

@@ -1,5 +1,5 @@
 #pragma once
-// Small scene files that are right and use as much of their formats as is read: what the mutations start from.
+// Small valid scene files, from which mutations start; they use every part of their formats that realcam reads.
 
 #include <cstdint>
 #include <cstring>
@@ -86,7 +86,7 @@ inline std::string base64(const std::string& bytes) {
 }
 
 /// The buffer of the glTF seed: positions, normals, texture coordinates, joints, weights, indices, sparse indices and
-/// values, inverse bind matrices, a picture that is none, and times.
+/// values, inverse bind matrices, bytes that are no valid picture, and times.
 inline std::string gltf_buffer() {
     Packed data;
     data.add({-1.f, -1.f, 0.f, 1.f, -1.f, 0.f, 1.f, 1.f, 0.f, -1.f, 1.f, 0.f});                    // at 0
@@ -103,7 +103,8 @@ inline std::string gltf_buffer() {
     return data.bytes;
 }
 
-/// `uri`: of the buffer with what is in front of it (",\"uri\":\"...\""), or nothing for a GLB.
+/// JSON of the glTF seed. `uri`: the buffer's uri property with its leading comma (",\"uri\":\"...\""); empty for a
+/// GLB.
 inline std::string gltf_seed(const std::string& uri) {
     return R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual","KHR_materials_sheen"],"extensionsRequired":["KHR_texture_transform"],
 "scene":0,"scenes":[{"nodes":[0,4,6]}],

@@ -1,10 +1,10 @@
 #pragma once
-// What must be true of a ray at every surface that it meets, whatever surface and ray: it lies on the surface, inside
-// the rim, and obeys Snell's law; and what stopped it was there.
+// Laws that hold for every ray at every surface that it meets: the hit lies on the surface and inside the rim, and the
+// ray obeys Snell's law; if the ray ends there, the reported cause is real.
 //
-// The bounds are backward errors: what is allowed is what a few roundings of the numbers that enter a formula can do,
-// so they hold at tangents and at the edges of hemispheres too. `kRoundings` of them: the longest chain of operations
-// from a ray to a hit has about twenty.
+// The bounds are backward errors: they allow the effect of `kRoundings` roundings of the numbers that enter a formula,
+// so they hold at tangents and at the edges of hemispheres too. The longest chain of operations from a ray to a hit has
+// about twenty.
 
 #include <algorithm>
 
@@ -35,7 +35,7 @@ public:
 
     void check(const Crossing& ray) const {
         const bool on_surface = ray.status != RayStatus::missed && ray.status != RayStatus::no_convergence;
-        // Squares beyond say nothing; such a ray is out of every rim.
+        // Squares of larger lengths overflow; such a ray is outside every rim.
         if (!(length(ray.at) < 1e30) || !(length(ray.before) < 1e30)) return;
         if (!on_surface) {
             if (!same(ray.at, ray.before)) broken("a ray that ended has moved", ray, 0, 0);
@@ -66,25 +66,25 @@ public:
 
 private:
     static constexpr double eps = std::numeric_limits<T>::epsilon();
-    /// Squares of smaller numbers are none.
+    /// Squares of smaller numbers underflow.
     static constexpr double tiny = std::numeric_limits<T>::digits == 24 ? 0x1p-63 : 0x1p-511;
 
     struct Near {
-        double distance, distance_bound;  ///< of the hit from the surface, mm
+        double distance, distance_bound;  ///< distance of the hit from the surface, mm
         Vec3d normal;
-        double normal_bound;    ///< radians
+        double normal_bound;  ///< radians
         double incidence_bound;  ///< of p . normal, over |p|
     };
 
     Near conic_at(const Crossing& ray) const {
         const Vec3d o = ray.before, at = ray.at;
-        // A conic is met from the vertex plane, where a ray that runs along it may come by far out.
+        // The search for a conic starts in its vertex plane, which a ray nearly parallel to it crosses far out.
         const double detour = step_.kind == SurfaceShape::conic ? 10 * std::fabs(o.z) : 0;
         const double way = length(at - o) + 2 * detour, from = length(o) + detour;
         const Vec3d gradient{-c_ * at.x, -c_ * at.y, 1 - c_ * q_ * at.z};
         const double g = length(gradient);
         const double value = residual(at);
-        // Of the terms of A t^2 - 2 G t + F, and of o + t p.
+        // Sum of the magnitudes of the terms of A t^2 - 2 G t + F, and of o + t p.
         const double terms = bend_ * (from * from + dot(at, at) + way * way) + 2 * (std::fabs(o.z) + std::fabs(at.z)) +
                              2 * way * (1 + bend_ * from) + 2 * g * (from + way) + tiny;
         const double incidence = kRoundings * eps * (1 + bend_ * (from + way));  // of G - A t
@@ -98,7 +98,8 @@ private:
         return static_cast<double>(c * (x * x + y * y + q * z * z) - 2 * z);
     }
 
-    /// An asphere at a distance from the axis. The sums of magnitudes are what roundings of the polynomial scale with.
+    /// Profile of an asphere at one distance from the axis. `sizes` and `slope_sizes` are sums of the magnitudes of the
+    /// polynomial's terms, which its rounding errors scale with.
     struct Profile {
         double sag, slope, root;  ///< slope: d sag / dr; root: of 1 - (1 + k) c^2 r^2
         double sizes, slope_sizes;
@@ -133,9 +134,9 @@ private:
         const double axial = std::fabs(o.z) + std::fabs(at.z - o.z) + std::fabs(here.sag) +
                              static_cast<double>(step_.sag_max - step_.sag_min) / 16;
         const double lateral = std::fabs(here.slope) * (length(o) + length(at - o));
-        // A wall has no height where the place has roundings as large as its slope makes them.
+        // On a very steep part the height is uncertain by the rounding of the position times the slope.
         const double height = kRoundings * eps * (axial + lateral + here.sizes) + std::fabs(c_) * square * edge + tiny;
-        // A wall's slope has no bound, but the angle of its normal has.
+        // The slope of a steep part is unbounded, but the angle of its normal is not.
         const double angle = std::atan(here.slope);
         double turn = 0;
         for (const double side : {-kRoundings * eps, kRoundings * eps}) {
@@ -154,11 +155,11 @@ private:
                      n = std::sqrt(1 + static_cast<double>(step_.squared_index_change));
         const Vec3d change = ray.after - ray.along;
         const double turned = length(cross(change, near.normal));
-        // A sphere's normal is (-cx, -cy, 1 - cz) as it is, longer or shorter where the hit is not on the sphere.
+        // A sphere's normal (-cx, -cy, 1 - cz) is not normalised: it has unit length only if the hit is on the sphere.
         const double stretch = step_.kind == SurfaceShape::sphere ? 2 * bend_ * near.distance_bound : 0;
         const double length_bound = kRoundings * eps * (p + n * p) +
                                     length(change) * (p * near.incidence_bound + length(change) * stretch) / out;
-        // A length that was made right again turns the part along the surface.
+        // Restoring the length of the direction also changes its component along the surface.
         const double turn_bound = length(change) * near.normal_bound + kRoundings * eps * (p + out) + length_bound;
         if (!(turned <= turn_bound)) broken("Snell's law: the change is not along the normal", ray, turned, turn_bound);
         const double length_error = std::fabs(out - n * p);
@@ -206,7 +207,7 @@ private:
             if (ray.status == RayStatus::ok && open_least > 0) broken("passed behind a blade", ray, open_least, scale);
         }
     }
-    /// Positive behind a blade; `scale`: what rounding can change.
+    /// Returns a number that is positive behind a blade. `scale`: receives the bound of its rounding error.
     double blades(Vec3d at, double& scale) const {
         const double h = static_cast<double>(iris_.apothem), k = static_cast<double>(iris_.curvature);
         double extent = -1e300;
@@ -218,8 +219,9 @@ private:
         return k * (r2 + h * h) + 2 * (1 - k * h) * extent - 2 * h;
     }
 
-    /// A conic that is met squarely must be met. How much of the discriminant, and of the near cap, rounding can take
-    /// away depends on how far the ray comes from; a hundredth is past that, or the case is left out.
+    /// Checks that a ray that clearly intersects a conic is not reported as missed. The rounding of the discriminant
+    /// and of the near cap depends on the distance of the ray's origin; rays within 1/100 of either limit are left
+    /// out.
     void check_miss(const Crossing& ray) const {
         using Long = long double;
         const Vec3d od = ray.before, pd = ray.along;
@@ -256,8 +258,7 @@ private:
             const auto r2 = static_cast<T>(at.x * at.x + at.y * at.y);
             return sense * (at.z - static_cast<double>(asphere_sag(step_, r2).height));
         };
-        // Outside, the surface goes on as a plane. Whether a ray that meets its edge crosses the one or the other is
-        // open.
+        // Outside the search radius the surface continues as a plane. A ray that hits the edge may cross either.
         const double to_edge = (static_cast<double>(step_.sag_edge) - o.z) / p.z;
         const double ex = o.x + to_edge * p.x, ey = o.y + to_edge * p.y,
                      search = static_cast<double>(step_.search_squared);
@@ -269,7 +270,7 @@ private:
         const Vec3d at = o + high * p;
         const double slope = profile_at(at.x * at.x + at.y * at.y).slope, r = std::hypot(at.x, at.y);
         const double inwards = sense * (p.z - slope * (at.x * p.x + at.y * p.y) / std::max(r, tiny));
-        // Where it grazes, several crossings may lie within the roundings of one, and the sense is that of any of them.
+        // At grazing incidence several intersections may lie within the rounding of one; any may determine the sense.
         if (inwards > 1e-3 * length(p)) broken("an asphere that is met counts as missed", ray, near, far);
     }
 

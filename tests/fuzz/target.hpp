@@ -1,5 +1,5 @@
 #pragma once
-// The fuzz targets: functions of bytes, that report() what they find.
+// The fuzz targets: functions of bytes that report() their findings.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@ int fuzz_lens_trace(const std::uint8_t* data, std::size_t size);
 int fuzz_lens_file(const std::uint8_t* data, std::size_t size);
 int fuzz_camera(const std::uint8_t* data, std::size_t size);
 
-// Of realcam_fuzz_files.
+// Targets of the program realcam_fuzz_files.
 int fuzz_obj(const std::uint8_t* data, std::size_t size);
 int fuzz_mtl(const std::uint8_t* data, std::size_t size);
 int fuzz_gltf(const std::uint8_t* data, std::size_t size);

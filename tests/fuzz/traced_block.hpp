@@ -43,7 +43,8 @@ struct KernelTrace {
     }
 };
 
-/// As the backends take rays in. Returned through memory: gcc 12 takes (double)(float)x of two neighbours for x.
+/// Enters rays into the lens as the backends do. Writes through memory: gcc 12 takes (double)(float)x of two adjacent
+/// values for x.
 template <class T>
 __attribute__((noinline)) void enter(const RayBlock& rays, const KernelTrace& trace, LensRays<T, kRays>& out) {
     for (int i = 0; i < kRays; ++i) {
@@ -56,7 +57,8 @@ __attribute__((noinline)) void enter(const RayBlock& rays, const KernelTrace& tr
     }
 }
 
-/// A ray among others, whose search for a hit may go on longer, ends as it does alone on a GPU's thread.
+/// True if ray i of a block, in which other rays may need more iterations, ends exactly as if traced alone, as on a
+/// GPU.
 template <class T>
 bool same_alone(const LensPath<T>& path, const LensRays<T, kRays>& start, const LensRays<T, kRays>& end, int i) {
     LensRays<T, 1> ray;
@@ -69,7 +71,8 @@ bool same_alone(const LensPath<T>& path, const LensRays<T, kRays>& start, const 
            length(ray.direction[0] - end.direction[i]) == 0;
 }
 
-/// Surface by surface in one go: the numbers between the surfaces are those that the whole trace has there.
+/// Traces a block surface by surface and checks the laws at each. The numbers between surfaces are those of a whole
+/// trace.
 template <class T>
 void check_surfaces(const LensPath<T>& path, LensRays<T, kRays>& rays) {
     const LensView<T> lens = path.view();
@@ -96,7 +99,7 @@ void check_surfaces(const LensPath<T>& path, LensRays<T, kRays>& rays) {
     }
 }
 
-/// The same by the kernels, which take each surface for a lens of its own and give unit directions back.
+/// check_surfaces with the kernels, which trace each surface as a separate lens and return unit directions.
 template <class T>
 void check_surfaces(const realcam_kernels& kernels, const LensPath<T>& path, const LensRays<T, kRays>& start) {
     const LensView<T> lens = path.view();

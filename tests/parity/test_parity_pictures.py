@@ -19,8 +19,8 @@ GPUS = [d.name.removeprefix("cuda:") for d in rc.devices() if d.name.startswith(
 needs_gpu = pytest.mark.skipif(not GPUS, reason=f"no GPU: {rc.devices()[-1]} is all there is")
 needs_two = pytest.mark.skipif(len(GPUS) < 2, reason=f"{len(GPUS)} GPUs; two are wanted")
 
-# Where a sample goes astray, a pixel changes by the share of one sample, some percent; roundings alone leave 1e-5 of it
-# at most: 2^-24 times some hundred operations.
+# A sample whose path differs changes its pixel by that sample's share, some percent; rounding alone changes the pixel
+# by at most 1e-5 of its value: 2^-24 times some hundred operations.
 ASTRAY = 5e-4
 # An edge is as wide as the rounding of a hit, 1e-6 of the distance, against a pixel of 1e-3: with up to 64 samples and
 # a few edges in a pixel, one in a thousand pixels.
@@ -92,7 +92,7 @@ def scene_with_holes() -> rc.Scene:
 
 
 def scene_with_motion() -> rc.Scene:
-    """The scene with holes, of which copies and lamps go, turn and grow while the shutter is open."""
+    """The scene with holes, with instances and lamps that move, rotate and grow while the shutter is open."""
     scene = scene_with_holes().with_instance(textured_scene(), np.diag([0.2, 0.2, 0.2, 1]), name="copy")
     scene = scene.with_instance(frame_scene(spheres=2, boxes=1), name="balls")
     end = np.array([[0.0, 0, 0.3, 0.8], [0, 0.3, 0, 0.3], [-0.3, 0, 0, -0.5], [0, 0, 0, 1]])
@@ -142,8 +142,8 @@ def hold_parity(a: rc.Image, b: rc.Image) -> None:
     # Every ray that one sends through the lens, the other sends too; decisions at its rims may differ by rounding.
     assert a.stats.sampled_rays == b.stats.sampled_rays
     assert abs(a.stats.passed_rays - b.stats.passed_rays) <= 1 + 1e-5 * a.stats.sampled_rays
-    # Depth is a mean over the samples that met something. One that passes an edge changes it also where what lies
-    # behind is as bright as the edge.
+    # Depth is a mean over the samples that hit a surface. A sample that passes an edge changes it even if the surface
+    # behind is as bright as the one in front.
     met = np.isfinite(a.depth) & np.isfinite(b.depth) & kept
     assert (~np.isclose(b.depth[met], a.depth[met], rtol=1e-3, atol=0)).mean() <= ASTRAY_SHARE
 

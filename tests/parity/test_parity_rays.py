@@ -31,10 +31,11 @@ def held(what: str, tried: str, number_type: str, worst: float, limit: float, un
 
 
 def magnification(lens: rc.Lens, origins_mm: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, ...]:
-    """What the lens makes of a small change at the film, for rays that have left it: the factors by which a share of
-    the film's distance, in place, or of a radian, in direction, moves origins and directions. At least 1.
+    """Factors (at least 1) by which the lens magnifies a small change at the film, for rays that have left the lens:
+    change of their origins, in units of the film position, and of their directions, per change of the film point (in
+    units of the film position) or of the direction there.
 
-    Also the rays' film radii (mm), and which of them could be followed."""
+    Also returns the rays' film radii (mm), and which rays could be traced back to the film and out again."""
     film = lens.film_position_mm
     back = lens.trace(origins_mm, -directions, start="scene")
     ways = -back.directions
@@ -58,8 +59,8 @@ def magnification(lens: rc.Lens, origins_mm: np.ndarray, directions: np.ndarray)
 
 @pytest.mark.parametrize("name", CENTRED)
 def test_generated_rays(name: str) -> None:
-    """Scale is the film's distance for origins and 1 for directions, times what the lens magnifies: a rounding among
-    its last surfaces leaves a fisheye as a change of direction fourteen times as large."""
+    """Errors are relative to the film's distance for origins and to 1 for directions, times the lens's magnification of
+    small changes: a rounding at its last surfaces leaves a fisheye as a change of direction fourteen times as large."""
     lens = rc.Lens.load(name)
     camera = rc.Camera(lens, film=rc.Film(*lens.film_mm, (96, 64)))
     cpu, gpu = camera.generate_rays(spp=16, seed=5), camera.generate_rays(spp=16, seed=5, device="cuda")

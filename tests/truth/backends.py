@@ -1,4 +1,4 @@
-"""realcam as one more program that is given a prescription and rays: what the peers and the oracle are held against."""
+"""realcam as one more program that traces rays through a prescription, for comparison with the peers and the oracle."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import realcam as rc
 
 from .prescription import Prescription, Rays, Row, Traced
 
-# What may trace, and what Lens.trace needs to be told so.
+# Available backends, with the arguments of Lens.trace that select them.
 BACKENDS: dict[str, dict] = {"Embree": {"device": "cpu"}}
 if any(device.name.startswith("cuda:") for device in rc.devices()):
     BACKENDS["CUDA"] = {"device": "cuda"}

@@ -84,15 +84,15 @@ THIRD_ORDER_SUM = (-0.306954, 0.037071, -0.074910, -0.160505, -0.203302, -0.2324
 
 @dataclass(frozen=True)
 class FieldAberrations:
-    """Analysis "ssp" of one field: what it prints of the chief ray, and of rays over the pupil."""
+    """Analysis "ssp" of one field: its figures of the chief ray and of rays across the pupil."""
 
     field_deg: float
     pupil_distance: float  # EP DIST: the real entrance pupil behind the first vertex
     height: float  # of the chief ray on the film
     foci: tuple[float, float]  # X-FOCUS and Y-FOCUS of the chief ray, from the film; on the axis FOCUS
-    # Where a ray crosses the real entrance pupil (x, y), DELTA X, DELTA Y and OPD (waves). The listing has two
-    # decimals of the place on the stop; those in the entrance pupil are its radius of 25, less the vignetting, in
-    # equal steps.
+    # For each ray: its point in the real entrance pupil (x, y), DELTA X, DELTA Y and OPD (waves). The listing has only
+    # two decimals of the points on the stop; the points in the entrance pupil are equal steps of its radius of 25, less
+    # the vignetting.
     rays: list[tuple[float, float, float, float, float]]
 
 

@@ -11,7 +11,7 @@ from .prescription import Rays, Traced
 
 @dataclass(frozen=True)
 class Differences:
-    """Of each ray that passes in both programs: lengths in mm, directions as the length of a difference."""
+    """Differences of each ray that passes in both programs: lengths in mm, directions as the length of a difference."""
 
     position: np.ndarray
     direction: np.ndarray
@@ -28,10 +28,10 @@ def between(a: Traced, b: Traced) -> Differences:
 
 
 def of_return(start: Rays, back: Traced) -> Differences:
-    """Of rays sent back through the lens, from the straight lines on which they came: `start` without its failures.
+    """Differences of rays traced back through the lens from the straight lines on which they came in.
 
-    `back`'s optical paths are those of the return, less those of the way there: what is left is the way from the
-    first surface to the start, in air.
+    `start`: without the rays that failed. `back`: its optical paths are those of the return minus those of the forward
+    trace; the remainder is the distance from the first surface to the start, in air.
     """
     home = start.origins - back.positions
     along = (home * back.directions).sum(axis=1)
@@ -58,5 +58,5 @@ def contradictions(a: Traced, b: Traced) -> np.ndarray:
 
 
 def relative(a: dict[str, float], b: dict[str, float]) -> dict[str, float]:
-    """Of first-order figures; a pupil in the first vertex must be there exactly."""
+    """Relative differences of first-order figures; a figure of 0 (a pupil at the first vertex) must match exactly."""
     return {name: abs(a[name] - value) / abs(value) if a[name] != value else 0.0 for name, value in b.items()}

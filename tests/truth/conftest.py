@@ -1,4 +1,4 @@
-"""What traces rays in these tests: each backend of this machine in turn."""
+"""Fixtures that run tests with each backend of this machine in turn."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from . import backends
 
 @pytest.fixture(params=backends.BACKENDS)
 def backend(request: pytest.FixtureRequest) -> str:
-    """What a measurement calls it."""
+    """Name of the backend in measurements."""
     return str(request.param)
 
 

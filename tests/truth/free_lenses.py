@@ -37,7 +37,7 @@ def rotation(tilt: tuple[float, float, float]) -> np.ndarray:
 
 
 def frames(rows: list[Row]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Of each surface, vertex and axes in the lens frame."""
+    """Vertex and axes of each surface in the lens frame."""
     origin, axes = np.zeros(3), np.eye(3)
     result = []
     for row in rows:

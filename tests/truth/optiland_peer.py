@@ -11,8 +11,8 @@ from .prescription import Prescription, Rays, Row, Traced
 NAME = "Optiland"
 PACKAGE = "optiland"
 
-# Of an asphere's residual, mm. Its factory sets 1e-6, too loose to compare 1e-9 with; Optiland raises what is
-# below eight roundings of the distance by itself.
+# Tolerance of an asphere's residual, mm. Optiland's default of 1e-6 is too loose for comparisons to 1e-9; Optiland
+# itself raises a tolerance below eight roundings of the distance.
 TOLERANCE = 1e-15
 GAP = 10.0  # from the last surface to its image surface
 WAVELENGTH_UM = 0.5875618  # of no effect: all indices are constant

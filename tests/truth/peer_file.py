@@ -1,8 +1,8 @@
-"""What the peers say, kept in a file: they and what they need are 2 GB, too much for every test run.
+"""Results of the peers, stored in a file: the peers and their dependencies are 2 GB, too much for every test run.
 
 tools/make_peer_rays.py writes it. JSON: a list of lenses, each with its surfaces, its rays (origin and direction as
-they stand, of any length), and each peer's first-order data and rays: position, direction and optical path of one that
-passes, else its fate and the surface at which it ended.
+stored, not normalised), and each peer's first-order data and rays: position, direction and optical path of a ray that
+passes, otherwise its fate and the surface at which it ended.
 """
 
 from __future__ import annotations

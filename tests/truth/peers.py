@@ -11,7 +11,7 @@ PEERS: dict[str, ModuleType] = {peer.NAME: peer for peer in (optiland_peer, ray_
 
 
 def version(name: str) -> str | None:
-    """None where the peer is not installed."""
+    """Returns the installed version of the peer, or None if it is not installed."""
     try:
         return metadata.version(PEERS[name].PACKAGE)
     except metadata.PackageNotFoundError:

@@ -1,4 +1,4 @@
-"""Rays for a comparison: few decimals, so that every program is given the same numbers, and a file stays small."""
+"""Rays for a comparison: few decimals, so that every program gets the same numbers and the file stays small."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ def rounded(origins: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, np
 
 
 def unit(origins: np.ndarray, directions: np.ndarray) -> Rays:
-    """Of rays as they stand in a file. One division for all, so that all start with the same doubles."""
+    """Normalises the directions of rays from a file. All programs use it, so that they start with the same doubles."""
     return Rays(origins, directions / np.linalg.norm(directions, axis=1, keepdims=True))
 
 
 def from_the_scene(
     prescription: Prescription, half_field_deg: float, count: int, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray]:
-    """From a plane in front of the lens, all over the field, towards the whole entrance pupil and a little more."""
+    """Rays from a plane in front of the lens, over the whole field, towards the entrance pupil and a little beyond."""
     pupil = Paraxial(realcam_lens(prescription))
     half_fields = np.where(rng.uniform(0, 1, count) < WILD_SHARE, WILD_DEG, half_field_deg)
     angle = np.radians(half_fields) * np.sqrt(rng.uniform(0, 1, count))

@@ -1,4 +1,4 @@
-"""What ray-optics says of a lens's aberrations: Seidel sums, rays through places of the real stop, and their paths.
+"""Aberrations of a lens by ray-optics: Seidel sums, rays through points of the real stop, and their optical paths.
 
 The object is near: over the 1e10 mm of an object at infinity ray-optics' rays are rounded to 1e-6 mm.
 """
@@ -21,9 +21,10 @@ from .ray_optics_peer import TOLERANCE, WAVELENGTH_NM, model_of
 FILE = Path(__file__).with_name("ray_optics_analysis.json.gz")
 OBJECT_MM = 3000.0
 FIELD = 0.6  # of the film's corner
-# Where rays meet the stop: the first four are those of a fan of five.
+# Stop points of the rays, in units of the stop's radius: the first four are those of a fan of five.
 PLACES = np.array([(0, -0.5), (0, 0.5), (-0.5, 0), (0.5, 0), (0, 0.8), (0, -0.8), (0.8, 0), (-0.4, 0.4), (0.5, -0.6)])
-# Its search for a ray through the stop begins at the paraxial entrance pupil, and that ray misses a face of these.
+# ray-optics starts its search for a ray through the stop at the paraxial entrance pupil; in these lenses that ray
+# misses a surface.
 ABSENT = {
     "fisheye-10mm",
     "flektogon-20mm",
@@ -36,9 +37,9 @@ ABSENT = {
 @dataclass(frozen=True)
 class Opinion:
     """seidel: (surfaces, 5), S_I to S_V in mm, for a marginal ray that meets the stop's edge.
-    points: (N, 2), mm, of rays through PLACES, on the film, from the axis; nan where its search finds no ray.
-    chief_point: (2,), of the ray through the stop's middle.
-    opd: (N,), mm, against the sphere about chief_point through the place where that ray crosses the axis.
+    points: (N, 2), film points in mm from the axis of the rays through PLACES; nan if the search finds no ray.
+    chief_point: (2,), film point of the ray through the centre of the stop.
+    opd: (N,), mm, against the sphere about chief_point through the point at which that ray crosses the axis.
     """
 
     seidel: np.ndarray
@@ -48,7 +49,7 @@ class Opinion:
 
 
 def analysed(lens: Prescription, film_distance: float, field_deg: float) -> Opinion:
-    """Of an object point at that angle from the middle of the paraxial entrance pupil, below the axis; mm."""
+    """Results for an object point below the axis, at `field_deg` from the centre of the paraxial entrance pupil; mm."""
     from rayoptics.raytr.traceerror import TraceError
 
     model = model_of(lens, OBJECT_MM, film_distance)
@@ -84,7 +85,7 @@ def _path_to_sphere(model: Any, ray: Any, chief: Any) -> float:
 
 
 def write(version: str, opinions: dict[str, tuple[float, Opinion]]) -> None:
-    """opinions: field angle in degrees and what was said, by the names of lenses."""
+    """opinions: lens name -> field angle in degrees and results."""
     lenses = {
         name: {"field_deg": field, **{key: value.tolist() for key, value in vars(said).items()}}
         for name, (field, said) in opinions.items()
@@ -103,7 +104,7 @@ def read() -> dict[str, tuple[float, Opinion]]:
 
 
 class _Aim:
-    """Rays of an object point through given places of the stop. ray-optics' own search stops at 1e-8 mm."""
+    """Rays of an object point through specified points of the stop. ray-optics' own search stops at 1e-8 mm."""
 
     def __init__(self, model: Any, stop: int, point: np.ndarray, pupil: np.ndarray) -> None:
         self.sequence, self.stop, self.point, self.pupil = model["seq_model"], stop, point, pupil

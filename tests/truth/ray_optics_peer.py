@@ -11,7 +11,7 @@ from .prescription import Prescription, Rays, Row, Traced
 NAME = "ray-optics"
 PACKAGE = "rayoptics"
 
-# Of an asphere's Newton step, mm. ray-optics returns the point before the last step.
+# Tolerance of an asphere's Newton step, mm. ray-optics returns the point before the last step.
 TOLERANCE = 1e-13
 # Object to first vertex. ray-optics carries the chief ray from the object to the lens: over its usual 1e10 mm of an
 # object at infinity, a rounding grows to 5e-5 mm in the pupils.
@@ -124,7 +124,7 @@ def first_order(prescription: Prescription) -> dict[str, float]:
         "f_number": abs(data.efl) / diameter,
         "entrance_pupil_position_mm": data.enp_dist,
         "entrance_pupil_diameter_mm": diameter,
-        # From its chief ray; its own exp_dist holds where its image surface stands in the paraxial focus.
+        # From ray-optics' chief ray, because its exp_dist is valid only with the image surface at the paraxial focus.
         "exit_pupil_position_mm": prescription.vertices[-1] - chief[0] / chief[1],
         "exit_pupil_diameter_mm": 2 * data.exp_radius * scale,
     }

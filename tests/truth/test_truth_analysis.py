@@ -199,7 +199,7 @@ def test_a_perfect_lens_has_airys_first_dark_ring() -> None:
 
 
 def test_mtf_is_the_transform_of_the_point_spread_function() -> None:
-    """Also with vignetting, obstruction and defocus: of light that falls on the array all but 0.3%."""
+    """Holds with vignetting, obstruction and defocus too; all but 0.3% of the light falls on the PSF array."""
     cases = [
         (rc.Lens.load("double-gauss-50mm").stopped_down(4), 15.0, 0.0),
         (rc.Lens.load("double-gauss-50mm").stopped_down(4), 22.0, 0.05),
@@ -229,7 +229,7 @@ def test_field_curves_begin_as_third_order_says(name: str) -> None:
         (curves.tangential_mm, sums.tangential_astigmatism_mm),
         (curves.sagittal_mm, sums.sagittal_astigmatism_mm),
     ):
-        # Fifth order is smaller by the square of the field, 1e-4, times what the aberrations cancel by.
+        # Fifth order is smaller by the square of the field, 1e-4, times the factor by which the aberrations cancel.
         assert found[0, 1] - found[0, 0] == pytest.approx(-blur.sum() / slope, rel=0.01)
     astigmatism = (curves.tangential_mm - curves.sagittal_mm)[0, 1]
     petzval = curves.petzval_mm[1] - curves.petzval_mm[0]

@@ -56,7 +56,7 @@ def test_thick_lens(r1: float, r2: float, d: float, n: float, trace: Trace) -> N
     assert first.front_focal_distance_mm == pytest.approx(-focal_length * (1 + (n - 1) * d / (n * r2)), rel=1e-12)
     # The stop is in front of the glass: it is the entrance pupil.
     assert (first.entrance_pupil_position_mm, first.entrance_pupil_diameter_mm) == (0, 4)
-    # And a real ray close to the axis crosses it there.
+    # A real ray close to the axis crosses it at the back focal point.
     origins, directions = parallel(np.array([1e-4]))
     out = trace(lens, origins, directions, start="scene")
     reach = -out.origins_mm[0, 0] / out.directions[0, 0] * out.directions[0, 2]

@@ -20,7 +20,7 @@ SECTION = "Other programs"
 FILE = Path(__file__).with_name("free_rays.json.gz")
 CASES = json.loads(gzip.decompress(FILE.read_bytes()))["lenses"]
 
-# As for the peers of centred lenses: a millionth of a wavelength, and the angle of that over 100 mm.
+# The limits of the peers of centred lenses: a millionth of a wavelength, and the angle that it subtends at 100 mm.
 POSITION_MM, DIRECTION = 1e-9, 1e-11
 
 

@@ -24,7 +24,7 @@ FORMS: dict[str, dict] = {
     "Forbes terms of a conic": {"forbes": {"kind": "con", "radius_mm": 15.0, "coefficients_mm": [0.05, -0.02]}},
     "tilt": {"tilt_deg": (2, -3, 10), "decentre_mm": (0.2, -0.3, 0.1), "returns": True},
 }
-# Of which ray-optics has none.
+# Forms that ray-optics lacks.
 POLYNOMIALS: dict[str, dict] = {
     "terms of x and y": {"xy_terms": {(1, 1): 1e-4, (3, 0): 1e-6}, "aspheric_coefficients": {4: 1e-6}},
     "Zernike terms": {"zernike": {"order": "noll", "radius_mm": 14.0, "coefficients_mm": [0, 0.02, -0.01, 0.02, 0.01]}},
@@ -32,7 +32,7 @@ POLYNOMIALS: dict[str, dict] = {
 
 
 def written(form: dict, path: Path) -> rc.Lens:
-    # Of indices without dispersion, as the programs have formulas of their own for n_d and V_d.
+    # Indices without dispersion, because the programs have different formulas for n_d and V_d.
     front = rc.Surface(radius_of_curvature_mm=40, thickness_mm=6, material=1.6, clear_semi_diameter_mm=12)
     lens = rc.Lens(
         surfaces=[

@@ -36,7 +36,10 @@ def ours(scene: rc.Scene, taken: rc.Camera, spp: int, seed: int) -> np.ndarray:
 
 
 def mitsuba_scenes(shot: scenes.Shot) -> Callable[[], list[mi.Scene]]:
-    """Of a shot with motion, another one for each 1/16 of the exposure every time, each at a moment by chance."""
+    """Returns a function that makes the scenes of a render: a still shot has always the same one.
+
+    A shot with motion has 16 new ones in each call, at a random time in each 1/16 of the exposure.
+    """
     if not any(part.moves for part in shot.parts):
         still = [scenes.mitsuba_scene(shot)]
         return lambda: still
@@ -57,7 +60,7 @@ def theirs(peers: list[mi.Scene], sensor: mi.Sensor, falloff: np.ndarray, spp: i
 
 
 def falloff_of(taken: rc.Camera) -> np.ndarray:
-    """(H, W, 1): irradiance on the film for a radiance of 1, which is what Mitsuba's pinhole gives."""
+    """(H, W, 1): irradiance on the film for a radiance of 1; Mitsuba's pinhole records the radiance."""
     rays = taken.generate_rays(spp=16)
     return (np.bincount(rays.pixels, rays.weights, WIDTH * HEIGHT) / 16).reshape(HEIGHT, WIDTH, 1)
 
@@ -76,7 +79,7 @@ def compare(name: str, spp: int, rounds: int) -> tuple[float, float]:
     a = np.array([blocks(ours(mine, taken, spp, seed)) for seed in range(rounds)])
     b = np.array([blocks(theirs(peers(), sensor, falloff, spp, seed)) for seed in range(rounds)])
     variance = (a.var(axis=0, ddof=1) + b.var(axis=0, ddof=1)) / rounds
-    # Where nothing is noise (a sky, a lamp), what float32 rounds.
+    # The second term is the rounding of float32, for blocks without noise (a sky, a lamp).
     error = np.sqrt(variance + (1e-4 * a.mean()) ** 2)
     return a.mean() / b.mean() - 1, float(np.abs((a.mean(axis=0) - b.mean(axis=0)) / error).max())
 

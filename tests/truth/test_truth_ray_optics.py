@@ -32,9 +32,9 @@ def test_seidel_sums_surface_by_surface() -> None:
     worst = 0.0
     for name, (field, said) in OPINIONS.items():
         found = rc.analysis.seidel_bars(rc.Lens.load(name), field, object_distance_m=OBJECT_M).sums_mm[:, :5]
-        scale = np.abs(said.seidel).max(axis=0)  # of each sum its largest surface: single ones may vanish
+        scale = np.abs(said.seidel).max(axis=0)  # largest surface contribution to each sum: single ones may vanish
         worst = max(worst, float((np.abs(found - said.seidel) / scale).max()))
-    # The aim is 1e-6; both are the same few products, of which fisheyes' last surfaces leave three digits less.
+    # The aim is 1e-6. Both programs compute the same few products; at a fisheye's last surfaces three digits are lost.
     hold_worst("Seidel sums by surface", worst, 1e-11, "of the largest surface's")
 
 

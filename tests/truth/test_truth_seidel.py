@@ -18,7 +18,7 @@ SUMS = LENS.seidel(14.0000000032, colours_nm=(486.1, 656.3))
 
 
 def columns(sums: rc.Seidel) -> np.ndarray:
-    """As the listing's columns: SA, TCO, TAS, SAS, PTB, DST, AX, LAT, PTZ."""
+    """Array with the listing's columns: SA, TCO, TAS, SAS, PTB, DST, AX, LAT, PTZ."""
     return np.stack(
         [
             sums.spherical_mm,

@@ -26,7 +26,7 @@ def measured(what: str, tried: str, worst: float, limit: float, unit: str = "wav
 
 
 def places_on_the_stop(field: listing.FieldAberrations) -> np.ndarray:
-    """Where the listing's rays, given in the real entrance pupil, cross the stop, as shares of its radius."""
+    """Stop points, in units of the stop's radius, of the listing's rays, which are given in the real entrance pupil."""
     angle = math.radians(field.field_deg)
     direction = np.array([0.0, math.sin(angle), math.cos(angle)])
     origins = np.array([(x, y, field.pupil_distance) for x, y, *_ in field.rays]) - 80 * direction
@@ -73,8 +73,8 @@ def test_chief_rays_of_the_listing(angle: float, trace: Callable[..., rc.TraceRe
     sagittal = -(film[1, 0] - film[2, 0]) / (slopes[1, 0] - slopes[2, 0])
     tangential = -(film[3, 1] - film[4, 1]) / (slopes[3, 1] - slopes[4, 1])
     assert sagittal == pytest.approx(field.foci[0], abs=1e-6)
-    # The listed ones differ from the limit by 2.2e-5 and -1.5e-5: what a difference to one side leaves, of one ray
-    # 5e-4 of the pupil above the chief ray, where there is coma.
+    # The listed foci differ from the limit by 2.2e-5 and -1.5e-5: the error, in the presence of coma, of a one-sided
+    # difference with a ray 5e-4 of the pupil above the chief ray.
     assert tangential == pytest.approx(field.foci[1], abs=2.5e-5)
 
 
@@ -159,8 +159,8 @@ def test_spherical_aberration_goes_over_into_its_third_order() -> None:
 
 
 # Optiland 0.6.3, chief_ray strategy, of the prescription "phone-4mm" with constant indices (12 aspheres, stop at the
-# front): W in waves at five places on the stop. Its sphere is centred on the chief ray's image point too, and goes
-# through the middle of the paraxial exit pupil on the axis.
+# front): W in waves at five points of the stop. As in realcam, the reference sphere is centred on the chief ray's image
+# point; it goes through the centre of the paraxial exit pupil.
 PLACES = np.array([(0, -0.9), (0.9, 0), (0, 0.5), (-0.3, -0.4), (0.7, 0)])
 OPTILAND = {
     (math.inf, 0.0): (-0.141604427, -0.141604427, -0.121326875, -0.121326875, -0.140645018),

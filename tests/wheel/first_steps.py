@@ -1,7 +1,7 @@
-"""What a newcomer does with the wheel: install it, `python -m realcam demo`, `realcam view`, a look at its page.
+"""First steps of a new user with the wheel: install it, `python -m realcam demo`, `realcam view`, open its page.
 
-In an empty root (tests/wheel/in_empty_root.sh): python3 first_steps.py WHEEL, in a folder where `venv` may be made. It
-wants nothing but Python, and says what took how long: by the clock, and of processors.
+In an empty root (tests/wheel/in_empty_root.sh): python3 first_steps.py WHEEL, in a folder where `venv` may be made.
+Needs only Python. Prints the wall-clock time and the processor time of each step.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 PYTHON = Path("venv/bin/python").absolute()
-# Of the package websockets, which the server needs, too. Prints the size of the first picture that the page would show.
+# Uses the package websockets, which the server depends on. Prints the size of the page's first picture.
 LOOK = r"""
 import re, struct, sys, urllib.request
 from websockets.sync.client import connect

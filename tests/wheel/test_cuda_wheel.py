@@ -1,4 +1,4 @@
-"""The wheel of the plug-in for GPUs: what is in it, what it asks of the system, and whose stamp it has.
+"""The wheel of the GPU plug-in: its contents, its requirements of the system, and its version stamp.
 
 `./run wheel cuda` makes it and names it in REALCAM_CUDA_WHEEL; so does `./run wheel test`, where realcam is its wheel.
 """
@@ -41,7 +41,7 @@ def test_it_is_one_library_with_its_licences() -> None:
 
 
 def test_it_needs_the_system_alone_and_shows_two_functions() -> None:
-    """The CUDA runtime is inside; the driver is looked for when the first GPU is asked for."""
+    """The CUDA runtime is linked statically; the driver is loaded when the first GPU is requested."""
     elffile = pytest.importorskip("elftools.elf.elffile", reason="pyelftools comes with realcam[wheel]")
     elf = elffile.ELFFile(BytesIO(FILES.read(LIBRARY)))
     needed = {tag.needed for tag in elf.get_section_by_name(".dynamic").iter_tags("DT_NEEDED")}

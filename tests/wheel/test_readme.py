@@ -34,13 +34,13 @@ def python_block() -> str:
 
 
 def commands() -> list[list[str]]:
-    """Those of the section about the command line, without comments."""
+    """Commands in the README's section about the command line, without comments."""
     section = README.read_text(encoding="utf-8").partition("\n## Command line\n")[2].partition("\n## ")[0]
     return [shlex.split(line, comments=True) for line in re.findall(r"^    (realcam .*)", section, re.MULTILINE)]
 
 
 def run(words: Sequence[str], folder: Path) -> tuple[float, str]:
-    """The CPU seconds of a program in a folder, and what it printed. It finds nothing of the repository."""
+    """Runs a program in a folder, hidden from the repository. Returns its CPU seconds and its output."""
     environment = {key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "REALCAM_OIDN")}
 
     def used() -> float:
@@ -68,7 +68,7 @@ def test_the_first_steps_run_in_an_empty_folder_without_grain(tmp_path: Path) ->
     if run([PYTHON, "-c", "from realcam.installation import denoiser_library as d; print(d())"], tmp_path)[1] == "\n":
         pytest.skip("pictures are denoised, and the extra realcam[denoise] is not installed")
     seconds = all_steps(tmp_path / "first")
-    if seconds > CPU_S:  # what other programs do meanwhile makes CPU seconds longer
+    if seconds > CPU_S:  # other programs on the machine can increase the CPU time
         seconds = min(seconds, all_steps(tmp_path / "second"))
     named = set(re.findall(r'save\("(.*?)"\)', python_block()))
     named |= {word for words in commands() for option, word in itertools.pairwise(words) if option == "-o"}

@@ -1,4 +1,4 @@
-"""The wheel as it is handed out: what is in it, what it asks of the system, and under which licences.
+"""The wheel as distributed: its contents, its requirements of the system, and its licences.
 
 `./run wheel` makes it and names it in REALCAM_WHEEL.
 """
@@ -22,7 +22,8 @@ if "REALCAM_WHEEL" not in os.environ:
 WHEEL = Path(os.environ["REALCAM_WHEEL"])
 FILES = zipfile.ZipFile(WHEEL)
 
-# What may be inside, and its licence. None is the GPL, of any version, with or without exceptions.
+# Libraries that the wheel may contain, and their licences. GPL libraries are excluded, in every version, with or
+# without exceptions.
 LICENCES = {"libembree3": "Apache-2.0", "libembree4": "Apache-2.0", "libtbb": "Apache-2.0", "libpng16": "libpng"}
 POLICY = next(
     policy

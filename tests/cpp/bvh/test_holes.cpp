@@ -1,4 +1,4 @@
-// Rays at surfaces with holes: both traversals decide alike, and as often as the opacity says.
+// Rays at partially opaque surfaces: both traversals make the same decisions, at the rate given by the opacity.
 #if defined(REALCAM_HAS_BVH)
 
 #include <cmath>
@@ -19,7 +19,7 @@ Texture alpha_texture() {
     return texture;
 }
 
-/// Material 0 is whole, 1 is there by 40%, 2 as its texture says, 3 where that reaches a half.
+/// Material 0 is opaque, 1 has an opacity of 0.4, 2 that of its texture, 3 is opaque where the texture is at least 1/2.
 Scene holed(const Mesh& mesh) {
     Scene scene;
     for (const Vec3f p : mesh.positions) {
@@ -106,7 +106,7 @@ TEST_CASE("holes: Embree's filter and the wide BVH stop a ray at the same triang
                 hits += hit.triangle != kNoTriangle;
                 through += hit.triangle != solid.triangle;
                 differ += hit.triangle != found.triangle[i] || hit.instance != found.instance[i];
-                // What hides is what is met, however the ray is asked.
+                // A shadow ray is blocked exactly if the closest-hit query finds a hit, with both traversals.
                 wrong_shadows += any != (hit.triangle != kNoTriangle);
                 wrong_shadows += (hidden[i] != 0) != (found.triangle[i] != kNoTriangle);
             }

@@ -1,5 +1,5 @@
-// What moves during an exposure: interpolation against closed forms, both traversals against each other and against the
-// scene as it stands at a time, and lights that move.
+// Motion during an exposure: interpolation against closed forms, both traversals against each other and against a
+// static scene at the same time, and moving lights.
 #if defined(REALCAM_HAS_BVH)
 
 #include <cmath>
@@ -94,9 +94,9 @@ TEST_CASE("motion: keys for kernels are as many as a thousandth of the way wants
     there.origin = {3, 0, 0};
     CHECK(key_steps({{0, 1}, {{}, there}}, {0, 1}, points) == 1);
     CHECK(key_steps({{0, 1}, {{}, there}}, {2, 3}, points) == 0);
-    // An arc of 1 radian in steps of d radians: off by d^2 / 8 of a way of 2 sin 0.5, from d = 0.0876 on.
+    // An arc of 1 radian in steps of d radians: the error is d^2 / 8 for a distance of 2 sin 0.5, hence d = 0.0876.
     CHECK(key_steps({{0, 1}, {{}, turn_about({0, 0, 1}, 1)}}, {0, 1}, points) == 16);
-    // A bend at 1/3, next to which the way is cut by 1/3 of a step: 2/9 of the steps' length at 128 of them.
+    // A bend at 1/3, next to which the path is cut by 1/3 of a step: 2/9 of a step's length with 128 steps.
     CHECK(key_steps({{0, 1.0 / 3, 1}, {{}, there, {}}}, {0, 1}, points).value_or(0) == kMaxKeySteps);
     Motion fast;
     for (int k = 0; k < 200; ++k) {
@@ -153,8 +153,8 @@ TEST_CASE("motion: both traversals meet the same, and what stands there at the t
         CHECK(on_moving > 1000);
         CHECK(differ <= 5);
         CHECK(wrong_shadows <= 1);
-        // Keys are off by up to 1/1000 of ways of some 7 m (turns by up to half a circle of bodies of 2 m and 3-fold
-        // stretch), between keys; at keys by roundings alone.
+        // Between keys, positions are off by up to 1/1000 of distances of some 7 m (bodies of 2 m that turn by up to
+        // half a circle and stretch 3-fold); at keys, by rounding only.
         const bool at_key = time == 0 || time == 1;
         CHECK(stands_elsewhere < (at_key ? 10 : 300));
         CHECK(worst_place < (at_key ? 1e-4 : 2e-2));

@@ -13,7 +13,7 @@ using namespace realcam;
 
 namespace {
 
-/// A carpet of so many triangles that preparing it takes several times the 20 ms between two questions.
+/// A carpet of a million triangles: preparing it takes several times the 20 ms between two calls of KeepGoing.
 Scene carpet() {
     Scene scene;
     constexpr std::uint32_t kCount = 1'000'000;

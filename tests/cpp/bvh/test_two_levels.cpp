@@ -1,4 +1,4 @@
-// Objects that stand in a scene several times: against the same triangles, each put in its place in double precision.
+// Instances of objects, against the same triangles in one mesh, transformed in double precision.
 #if defined(REALCAM_HAS_BVH)
 
 #include <cmath>
@@ -42,7 +42,7 @@ Assembly drawn_assembly(BvhDraw& draw) {
     return assembly;
 }
 
-/// Every triangle where it stands, and how many lie before those of each instance.
+/// All transformed triangles in one mesh, and the index of each instance's first triangle.
 struct Baked {
     Mesh mesh;
     std::vector<std::uint32_t> first;

@@ -1,4 +1,4 @@
-// What the builder of the BVH promises: where triangles, boxes and slots lie, and how deep it is; and its refit.
+// Guarantees of the BVH builder for triangles, boxes, slots and depth; and the refit.
 #if defined(REALCAM_HAS_BVH)
 
 #include <algorithm>
@@ -16,8 +16,8 @@ using namespace realcam::test;
 
 namespace {
 
-// What must hold for every hierarchy: each triangle in exactly one slot, in the box of its slot and of all above, and
-// the depth that a traversal's stack has room for.
+// Invariants of every hierarchy: each triangle is in exactly one slot, inside the boxes of its slot and of all its
+// ancestors, and the depth fits a traversal's stack.
 struct Structure {
     const Mesh& mesh;
     const WideBvh& bvh;

@@ -145,7 +145,7 @@ TEST_CASE("a camera of the same lens and film takes over the last one's pupil, a
 }
 
 TEST_CASE("from frame to frame a pupil is found in less than half of the blocks") {
-    // Of the fisheye and the phone lens, on a film that shows where the image ends, outlines change over all rows.
+    // The film shows the edge of the image of the fisheye and the phone lens; their outlines change in all rows.
     for (const char* name : {"double-gauss-50mm", "fisheye-6mm-220deg", "phone-4mm"}) {
         CAPTURE(std::string(name));
         const LensSystem lens = io::read_lens(name);
@@ -161,7 +161,7 @@ TEST_CASE("from frame to frame a pupil is found in less than half of the blocks"
 }
 
 TEST_CASE("errors of pupils that are found near others do not add up") {
-    // Each starts from the last one that was found anew, and here from an image that ends with the film.
+    // Each search starts from the last pupil that was found from scratch; here its image reaches the edge of the film.
     const LensSystem lens = io::read_lens("double-gauss-50mm");
     const double radius = half_diagonal(lens);
     const Pupil first(focused(lens, 4000), radius);

@@ -1,4 +1,4 @@
-// What several threads do for the rays of a lens.
+// Floating-point mode of the threads that trace a lens's rays.
 #include "embree/lens_rays.hpp"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-// Rays in packets for Embree: what is left out is not read, and has an answer all the same.
+// Ray packets for Embree: inactive rays are not read, and their results are defined nevertheless.
 #if defined(REALCAM_HAS_BVH)
 
 #include "doctest/doctest.h"
@@ -41,7 +41,8 @@ TEST_CASE("shadow rays that are left out are not hidden, in packets of their own
     const OneTriangle world;
     SceneRays<kRays> rays;
     for (int i = 0; i < kRays; ++i) {
-        // Of the second packet no ray is used, of the third one, of the fourth half; half of them look away.
+        // The second packet has no active ray, the third has one, half of the fourth's are active; half of all point
+        // away from the triangle.
         rays.active[i] = i < 16 || i == 40 || (i >= 48 && i % 2 == 0);
         if (!rays.active[i]) continue;
         rays.origin.set(i, {0, 0, 0});

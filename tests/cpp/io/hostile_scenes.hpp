@@ -1,5 +1,5 @@
 #pragma once
-// Small glTF files of which a piece is wrong, for test_hostile_*.cpp.
+// Small glTF files with one faulty part, for test_hostile_*.cpp.
 
 #include <chrono>
 #include <string>

@@ -11,11 +11,11 @@
 
 namespace realcam::test {
 
-/// What became of the text of a lens file.
+/// Result of reading the text of a lens file.
 struct Reading {
-    std::string error;  ///< empty: it was read
+    std::string error;  ///< empty if the text was read
     bool can_be_forced = false;
-    std::string glass;  ///< that is not known
+    std::string glass;  ///< name of the unknown glass
     LensSystem lens;
     std::vector<std::string> warnings;
 

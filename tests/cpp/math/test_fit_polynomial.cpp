@@ -1,4 +1,4 @@
-// Least squares: a polynomial is found again, and points that say too little leave the rest at 0.
+// Least-squares fits recover a polynomial; coefficients that the points do not determine are 0.
 
 #include "doctest/doctest.h"
 #include "math/least_squares.hpp"

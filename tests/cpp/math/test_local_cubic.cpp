@@ -1,4 +1,4 @@
-// Cubics through nodes at uneven distances are exact for cubics, of which odd and even ones go on beyond 0.
+// Interpolation through nodes at uneven distances is exact for odd and even cubics, which continue by symmetry below 0.
 
 #include "doctest/doctest.h"
 #include "math/local_cubic.hpp"

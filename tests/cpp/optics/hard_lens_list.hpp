@@ -16,7 +16,7 @@ struct HardLens {
 struct LensGroup {
     std::string what;
     std::vector<HardLens> lenses;
-    bool float32_images = true;  ///< of aspheres they are held at the lens's own size only, by test_float32_error.py
+    bool float32_images = true;  ///< false for aspheres: test_float32_error.py tests theirs, at the lenses' own size
 };
 
 /// Two glasses whose air gap has no thickness, once with equal radii and once overlapping at the rim.

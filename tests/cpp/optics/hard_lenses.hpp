@@ -83,7 +83,8 @@ struct Cassegrain {
         return with_film(
             lens_of({stop_plane(20, kRim), shadow, primary, mirror(-2 * p * m / (m - 1), conic, 0, kHole)}), kBack, 10);
     }
-    /// Of the light that comes in at a height: tan(angle / 2) = height / (2 f), as confocal conics keep its ratio.
+    /// Sine of the image-side angle of a ray that enters at this height: tan(angle / 2) = height / (2 f), because
+    /// confocal conics preserve the ratio of these tangents.
     static double sine_behind(double height) { return std::sin(2 * std::atan(height / (2 * kFocalLength))); }
 };
 
@@ -123,7 +124,7 @@ inline std::vector<Surface> galilean(double rim, double gap_behind) {
     return {refracting(128, 0, Glass::constant(2), rim), refracting(0, 64, Glass::air(), rim),
             refracting(-64, 0, Glass::constant(2), 0.6 * rim), refracting(0, gap_behind, Glass::air(), 0.6 * rim)};
 }
-/// The same the other way round: twice as wide.
+/// The galilean elements reversed: parallel light leaves them parallel and twice as wide.
 inline std::vector<Surface> reversed_galilean(double rim, double gap_behind) {
     return {refracting(0, 0, Glass::constant(2), 0.6 * rim), refracting(64, 64, Glass::air(), 0.6 * rim),
             refracting(0, 0, Glass::constant(2), rim), refracting(-128, gap_behind, Glass::air(), rim)};

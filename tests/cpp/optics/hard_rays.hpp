@@ -35,7 +35,7 @@ inline RayBatch rays_from_film(const LensSystem& lens, int count, Random& random
     return rays;
 }
 
-/// The way back of the rays that have left the lens, begun a little in front of it.
+/// Reversed rays of those that have left the lens, starting a little in front of it.
 inline RayBatch rays_back(const LensSystem& lens, const std::vector<OracleRay>& ends) {
     RayBatch rays;
     for (const OracleRay& end : ends) {
@@ -53,10 +53,10 @@ inline std::vector<OracleRay> oracle_rays(const LensSystem& lens, LightDirection
     return ends;
 }
 
-/// The worst of many rays; lengths relative to the lens's scale.
+/// Largest errors over many rays; lengths relative to the lens's scale.
 struct RayErrors {
-    double ray = 0;  ///< place on the last surface, direction, optical path
-    double image = 0;  ///< place on the film; of rays to the scene, of the film point to which they really belong
+    double ray = 0;    ///< position on the last surface, direction, optical path
+    double image = 0;  ///< position on the film; for rays to the scene, of the film point that they trace back to
     int decided_otherwise = 0, passed = 0;
 
     void take(const RayErrors& other) {
@@ -75,7 +75,7 @@ inline RealVector on_plane(const RealVector& o, const RealVector& d, const Real&
     return o + ((z - o.z) / d.z) * d;
 }
 
-/// A lens that lets pass what is off by rounding.
+/// The lens with slightly larger openings, which pass rays that rounding moves over a rim.
 inline LensSystem opened(LensSystem lens) {
     for (Surface& s : lens.surfaces) {
         s.clear_semi_diameter *= 1.001;
@@ -112,8 +112,8 @@ inline RayErrors errors_of(const TraceBackend& backend, const LensSystem& lens, 
         const double turn = size_of(direction - ray.direction);
         const double path = std::fabs(static_cast<double>(Real(found.optical_path[i]) - ray.optical_path));
         errors.ray = std::max({errors.ray, size_of(origin - ray.origin) / scale, turn, path / scale});
-        // Not of rays that graze a surface under less than 6 degrees: the rounding of a place or a direction in front
-        // of it, which is nothing there, moves them along it by ten times as much, and more.
+        // Rays that graze a surface at less than 6 degrees are left out: a rounding of their origin or direction in
+        // front of it, negligible there, moves the hit along the surface by ten times as much or more.
         if (ray.clearance < 0.01) continue;
         double image = 0;
         if (way == LightDirection::to_film) {

@@ -1,6 +1,6 @@
 #pragma once
-// Every way in which this machine can trace rays through a lens: the kernels of each instruction set and a GPU, in both
-// number types. A test that loops over trace_backends() holds all of them to its bound.
+// All trace backends of this machine: the kernels of each instruction set and a GPU, in both number types. A test that
+// loops over trace_backends() applies its bound to all of them.
 
 #include <functional>
 #include <string>
@@ -44,7 +44,7 @@ struct TraceBackend {
     TraceRays trace;
 
     const char* number_type() const { return precision == Precision::float64 ? "float64" : "float32"; }
-    /// Whether a product and a sum are rounded once.
+    /// True if the backend uses fused multiply-add, which rounds a product and a sum once.
     bool fuses() const { return name != "Embree v2"; }
     double epsilon() const { return precision == Precision::float64 ? 0x1p-52 : 0x1p-23; }
 

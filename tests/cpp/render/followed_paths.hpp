@@ -74,7 +74,8 @@ void follow(const BothTraversals& traversals, const PathSettings& settings, int 
         ++bounce;
 }
 
-/// Checks that each lane of a block takes the path of a block of one, up to this share of what that brings.
+/// Checks that each lane of a block yields the same path as a block of one lane, within `tolerance` relative to its
+/// light.
 template <SceneKind scene_kind>
 void check_lanes(const Assembly& assembly, const PathSettings& settings, float tolerance) {
     constexpr int kLanes = 128;
@@ -119,7 +120,7 @@ struct AddedLight {
     void (*add)(Scene&);
 };
 
-/// What may shine into the room besides its lamp.
+/// Lights that may be added to the room's lamp.
 inline constexpr AddedLight kAddedLights[] = {
     {"a lamp alone", [](Scene&) {}},
     {"a constant sky", [](Scene& s) { s.environment.constant = {2, 3, 4}; }},

@@ -42,7 +42,7 @@ private:
         return square > 0 && trace_(film_, {l, m, -std::sqrt(square)}).passed();
     }
 
-    /// The box around what passes, from grids that close in on it.
+    /// Finds the bounding box of the passing region by successively finer grids.
     void find_box() {
         const Vec3d rim{0, 0,
                         lens_.last_vertex() + lens_.surfaces.back().sag(lens_.surfaces.back().clear_semi_diameter)};
@@ -76,7 +76,7 @@ private:
         box[2] = std::min(box[2], d.y), box[3] = std::max(box[3], d.y);
     }
 
-    /// Where passing stops between an inner and an outer place.
+    /// Edge of the passing interval, between a position inside and one outside, by bisection.
     template <class Passes>
     static double edge(Passes&& passes_at, double in, double out) {
         for (int i = 0; i < 45; ++i) {

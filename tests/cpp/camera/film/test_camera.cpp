@@ -1,4 +1,4 @@
-// What every camera model has in common: orientation, place, unused lanes, and cameras that are refused.
+// Properties common to all camera models: orientation, position, unused lanes, and rejected cameras.
 
 #include <cmath>
 #include <string>

@@ -30,7 +30,7 @@ double axis_irradiance(const LensSystem& lens, CameraModel model) {
     return sum / (kBlocks * kLanes);
 }
 
-// Where a ray of the ideal models meets the plane `distance` in front of the first vertex, mm.
+// Intersection of a ray of the ideal models with the plane `distance` in front of the first vertex, mm.
 Vec3d at_plane(const LensFrameRay& ray, double distance) {
     const Vec3d o = static_cast<Vec3d>(ray.origin_mm), d = static_cast<Vec3d>(ray.direction);
     return o + ((-distance - o.z) / d.z) * d;
@@ -160,13 +160,13 @@ TEST_CASE("all models have the same exposure on the axis") {
         CAPTURE(name);
         const LensSystem open = focused(io::read_lens(name), kInfinity);
         const double real = axis_irradiance(open, CameraModel::full_lens);
-        // The ideal models take it over from 4096 rays, each of which stands for 5e-4 of the area at its edges; the
-        // full lens is sampled.
+        // The ideal models compute it from 4096 rays, which represent 5e-4 of the area each at the edges; the full lens
+        // is sampled.
         for (const CameraModel model : {CameraModel::pinhole, CameraModel::thin_lens, CameraModel::thick_lens})
             CHECK(axis_irradiance(open, model) == about(real, 5e-3));
         if (name == "mirror-telephoto-500mm") continue;  // below
-        // A field of radiance 1 through an aplanatic lens: pi / (4 N^2). At f/16 what is left is the pupil's aberration
-        // and the film's distance from the paraxial plane, squared; wide open, the sine condition and the rims.
+        // A field of radiance 1 through an aplanatic lens: pi / (4 N^2). Deviations at f/16: pupil aberration and the
+        // square of the film's distance from the paraxial plane; wide open: the sine condition and vignetting.
         const FirstOrder data = first_order(open, open.wavelength_nm);
         const double away = data.back_focal_distance - open.film_distance;
         const double defocus = 2.5 * std::fabs(away / (open.film_position() - data.exit_pupil_position));

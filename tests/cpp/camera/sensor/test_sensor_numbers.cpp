@@ -26,8 +26,8 @@ TEST_CASE("the sensor's logarithm and exponential") {
         const double x = 1e-4 * i;
         worst = std::max(worst, std::fabs(exp_of_negative(x) * std::exp(x) - 1));
     }
-    // The constant log 2 is off by half an ulp, 5.6e-17, of which the largest argument takes 58; their product, 40, is
-    // off by half an ulp, 3.6e-15.
+    // The constant log 2 is off by half an ulp, 5.6e-17, and is multiplied by up to 58 for the largest argument; the
+    // product, 40, is off by half an ulp, 3.6e-15.
     hold({"Samplers", "exponential", "4e5 numbers up to 40", "core", "float64", worst, 8e-15, "relative"});
 }
 

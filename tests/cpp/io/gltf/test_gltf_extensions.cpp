@@ -1,4 +1,4 @@
-// EXT_mesh_gpu_instancing, the cameras of a glTF, and what is said of extensions that are not read.
+// EXT_mesh_gpu_instancing, the cameras of a glTF, and messages about unsupported extensions.
 
 #include <cmath>
 #include <cstring>

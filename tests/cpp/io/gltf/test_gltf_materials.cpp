@@ -1,4 +1,4 @@
-// What a glTF says of materials and lights, property by property. The truth is the specification of glTF 2.0 and of its
+// Materials and lights of glTF files, property by property. The truth is the specification of glTF 2.0 and of its
 // Khronos extensions: names, defaults and ranges.
 
 #include <cmath>
@@ -312,7 +312,7 @@ TEST_CASE("glTF: numbers that no material can have become the nearest, with one 
     CHECK(std::isinf(
         file.extended("KHR_materials_volume", R"("attenuationDistance":1e300)").volume.attenuation_distance));
     CHECK(std::isinf(file.extended("KHR_materials_volume", R"("attenuationDistance":0)").volume.attenuation_distance));
-    // What is no number at all is as if it were not there.
+    // Values of a wrong type are ignored; the defaults apply.
     const GltfMaterial odd = file.material(R"("pbrMetallicRoughness":{"metallicFactor":"1","baseColorFactor":5},
         "doubleSided":"yes","alphaCutoff":null,"normalTexture":7,"extensions":[])");
     CHECK(odd.metallic_factor == 1.0f);

@@ -1,4 +1,4 @@
-// Parts of a glTF file that stand as objects. The truth is the numbers in the files.
+// Parts of a glTF file that become instanced objects. The truth is the numbers in the files.
 
 #include <string>
 #include <vector>

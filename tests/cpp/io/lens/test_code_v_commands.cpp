@@ -69,7 +69,7 @@ TEST_CASE("commands that make another lens are refused by their names and lines"
     CHECK(read(replaced(kCodeV, "GO\n", "S1..2 3 4\nGO\n"), "a.seq").says("a range of surfaces"));
     CHECK(read(replaced(kCodeV, "GO\n", "THI S1..2 4\nGO\n"), "a.seq").says("a range of surfaces"));
     CHECK(read(replaced(kCodeV, "GO\n", "DIM I\nGO\n"), "a.seq").says("DIM must precede the surfaces"));
-    // What changes one surface is done.
+    // Commands that change a single surface are applied.
     const LensSystem thicker = read(replaced(kCodeV, "GO\n", "THI S2 7\nRDY S2 60\nGO\n"), "a.seq").lens;
     CHECK(thicker.surfaces.at(0).thickness == 7);
     CHECK(1 / thicker.surfaces.at(0).curvature == about(60, 1e-15));

@@ -1,4 +1,4 @@
-// Lens files: the bundled ones against what their sources state, and what is said about bad ones.
+// Lens files: the bundled ones against the figures of their sources, and the messages about invalid ones.
 
 #include <unistd.h>
 
@@ -53,7 +53,7 @@ std::string with_line(int number, const std::string& replacement) {
     return joined(lines);
 }
 
-// The message about a text, or that there is none.
+// Message of the error for a text, or "(no error)".
 std::string complaint(const std::string& text) {
     try {
         io::parse_lens(text, "probe.toml");
@@ -72,7 +72,7 @@ std::string complaint_about_name(const std::string& name) {
     return "(no error)";
 }
 
-// The message begins with its place and contains what is wrong.
+// Checks that the message is one line, begins with `place` and contains `part`.
 void check_complaint(const std::string& text, const std::string& place, const std::string& part) {
     const std::string message = complaint(text);
     CAPTURE(message);
@@ -90,7 +90,7 @@ TEST_CASE("the lens that the bad ones are made from is good") {
     CHECK(lens.stop_index() == 1);
     CHECK(lens.film_distance == 50);
     CHECK(lens.surfaces[0].curvature == 0.02);
-    // The stop stands in the glass: the medium goes on behind it.
+    // The stop is inside the glass: the medium behind it is the same.
     CHECK(lens.indices(550)[1] == 1.5);
     CHECK(lens.indices(550)[2] == 1.5);
     CHECK(lens.indices(550)[3] == 1.0);
@@ -260,8 +260,8 @@ TEST_CASE("a lens that is not there is named, with the nearest names") {
 }
 
 TEST_CASE("every bundled lens is valid, cites its source, and has the focal length that the source states") {
-    // As the lens files' sources state them; of the four classics, the figures of test_first_order.cpp. The rest of
-    // what the sources state is compared by tests/python/lens/test_bundled_lenses.py.
+    // Focal lengths stated by the lens files' sources; for the four classics, the figures of test_first_order.cpp.
+    // tests/python/lens/test_bundled_lenses.py compares the sources' other figures.
     const std::vector<std::pair<std::string, double>> stated = {{"achromat-75mm", 75},
                                                                 {"angulon-210mm", 210},
                                                                 {"apo-telephoto-180mm", 180},

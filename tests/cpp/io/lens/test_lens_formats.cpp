@@ -1,4 +1,5 @@
-// Lens files of other programs: what is read, what is refused and how, and what comes back of what is written.
+// Lens files of other programs: files that are read, refused files and their messages, and round trips of written
+// files.
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,8 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-/// Where rays of several heights and two fields leave the lens, and in which direction.
+/// Traces rays of several heights and two fields. Returns their statuses and, for those that pass, their exit points
+/// and directions.
 std::vector<double> rays_through(const LensSystem& lens) {
     std::vector<double> values;
     const LensPath<double> path(lens, LightDirection::to_film, lens.wavelength_nm);
@@ -233,11 +235,11 @@ TEST_CASE("bundled lenses go through TOML, .zmx and .seq and come back") {
         for (const char* file : {"a.zmx", "a.seq"}) {
             const Reading back = read(io::lens_text_for(lens, file).text, file);
             REQUIRE(back.error == "");
-            // What the issue asks for, mm.
+            // The limit that the issue requires, mm.
             CHECK(largest_difference(rays_through(lens), rays_through(back.lens)) < 1e-9);
             CHECK(back.lens.film_distance == lens.film_distance);
         }
-        // With its rings turned, and what a tinkerer changes.
+        // Changed iris and aperture, and an edited surface.
         lens = with_iris(stopped_down(lens, 1.37 * first_order(lens, lens.wavelength_nm).f_number), {7, 0.3, 0.1234});
         lens = with_surface(lens, lens.stop_index() == 0 ? 1 : 0, [&] {
             Surface surface = lens.surfaces[lens.stop_index() == 0 ? 1 : 0];

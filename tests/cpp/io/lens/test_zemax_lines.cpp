@@ -1,4 +1,4 @@
-// What .zmx files have that OpticStudio itself does not write, or writes seldom.
+// Lines of .zmx files that OpticStudio itself never or rarely writes.
 
 #include <cmath>
 #include <string>
@@ -95,8 +95,8 @@ TEST_CASE("a rim that is smaller than the stop's beam counts in the T-stop") {
     const double bare = std::pow(1 - std::pow(0.6 / 2.6, 2), 2);  // two faces
     const double f_number = 50 / 0.6 / 6;  // of the beam that the rim leaves
     CHECK(t_stop(read(front, "a.zmx").lens, kLineD_nm) == about(f_number / std::sqrt(bare), 1e-9));
-    // Behind the lens the axial ray of height h has come down to h (1 - 9.5 * 0.6 / 50) or so; what a plane 10 mm
-    // behind leaves is told by first-order optics to the third order of the height over the radius, 1e-2.
+    // Behind the lens the axial ray of height h has descended to about h (1 - 9.5 * 0.6 / 50). First-order optics gives
+    // the beam that a plane 10 mm behind the lens passes, up to third order in height over radius, 1e-2.
     const std::string rear = replaced(replaced(replaced(front, "  CLAP 0 3 0\n", ""), "  DISZ 80", "  DISZ 10"),
                                       "SURF 4\n  CURV 0\n  DISZ 0\n",
                                       "SURF 4\n  CURV 0\n  DISZ 70\n  CLAP 0 3 0\nSURF 5\n  CURV 0\n  DISZ 0\n");
@@ -119,7 +119,7 @@ TEST_CASE("a glass by its number, and a glass that is picked up") {
         REQUIRE(reading.error == "");
         return focal_length(reading.lens);
     };
-    // What stands behind the number are the leftovers of another solve.
+    // The fields after the glass number are leftovers of another solve.
     CHECK(focal(singlet("517642 0 0 7734.3 17972.8 29.49 1 1 1 0 0")) == about(50 / 0.517, 1e-12));
     CHECK(focal(singlet("728284 0 0 1.5 40")) == about(50 / 0.728, 1e-12));
     CHECK(focal(singlet("517642 0 0 1.6 50", "GCAT SCHOTT\n")) == about(50 / 0.517, 1e-12));
@@ -157,7 +157,7 @@ TEST_CASE("n_d and V_d that the file states of a glass that nobody lists are tak
         CHECK(refused.says("surface 1: unknown glass \"XY-CROWN7\""));
         CHECK(refused.glass == "XY-CROWN7");
     }
-    // The file's figures for a glass that is known tell: here they are what its lines had there before.
+    // The figures of a known glass show whether the file's figures are reliable: here they are leftovers.
     const std::string doublet =
         replaced(singlet("XY-CROWN7 0 0 1.62 60.3"), "SURF 2\n  CURV 0", "SURF 2\n  GLAS N-SF5 0 0 1.5 40\n  CURV 0");
     CHECK(read(doublet, "a.zmx").says("unknown glass \"XY-CROWN7\""));

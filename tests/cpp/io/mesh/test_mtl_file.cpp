@@ -1,5 +1,5 @@
-// What an MTL says, statement by statement. The truth is the format's own description (Alias|Wavefront, File Formats
-// 4.2, section 5) and, for what begins with P, the extension of 2015 for physically based rendering.
+// MTL files, statement by statement. The truth is the format's own description (Alias|Wavefront, File Formats 4.2,
+// section 5) and, for statements that begin with P, the extension of 2015 for physically based rendering.
 
 #include <string>
 
@@ -168,7 +168,7 @@ TEST_CASE("MTL: Tr alone is one less d, and d wins where both are given") {
     CHECK(mtl.material("d -halo 0.5\n").d == 0.5f);
     CHECK(mtl.warned("d -halo is not modelled"));
 
-    // The next material begins anew.
+    // Values do not carry over to the next material.
     Checkpoint checkpoint;
     io::FileScene scene;
     io::read_mtl(scene, mtl.folder.write("two.mtl", "newmtl a\nd 0.5\nillum 4\nnewmtl b\nTr 0.25\nKs 1 1 1\n"),
@@ -198,7 +198,7 @@ TEST_CASE("MTL: options of a picture have their own number of words") {
     check_uv(picture_of("-s 2 wood.png"), 1, 0.25);
     check_uv(picture_of("-o 2 wood.png"), 2.5, 0.25);
     check_uv(picture_of("-s 2 3 -o 1 -t 1 -mm 1 wood.png"), 2, 0.75);
-    // What is the default says nothing.
+    // Options with their default value are not reported.
     CHECK(picture_of("-blendu on -blendv on -cc off -clamp off wood.png").other_options.empty());
     // Names may look like options and numbers.
     CHECK(picture_of("-wood.png").name == "-wood.png");

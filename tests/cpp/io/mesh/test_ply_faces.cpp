@@ -1,5 +1,5 @@
-// What the faces of a PLY say: strips, texture coordinates of their own, and textures by number. The truth is the
-// numbers in the files.
+// Faces of PLY files: strips, texture coordinates of faces, and textures by index. The truth is the numbers in the
+// files.
 
 #include <string>
 #include <vector>

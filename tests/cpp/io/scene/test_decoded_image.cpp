@@ -10,7 +10,7 @@ using namespace realcam::io;
 
 namespace {
 
-// Codes 255 and 128, as 8 bits, as fractions and as numbers of which a file says that they are light.
+// The values 255 and 128: as 8-bit codes, as fractions, and as numbers that the file declares to be linear light.
 const DecodedImage kCodes{2, 1, std::vector<std::uint8_t>{255, 128, 0, 255, 128, 128, 0, 0}};
 const DecodedImage kFractions{2, 1, std::vector<float>{1, 128 / 255.f, 0, 1, 128 / 255.f, 128 / 255.f, 0, 0}};
 const DecodedImage kLight{2, 1, std::vector<float>{1, 128 / 255.f, 0, 1, 128 / 255.f, 128 / 255.f, 0, 0}, true};

@@ -1,4 +1,4 @@
-// What becomes of MTL's d and map_d and of glTF's alpha, and of materials that are not lit.
+// Opacity from MTL's d and map_d and from glTF's alpha, and unlit materials.
 
 #include "gltf_files.hpp"
 

@@ -33,7 +33,7 @@ Vec3d normal_at(const Texture& texture, int column, int row) {
     return {2 * static_cast<double>(p[0]) - 1, 2 * static_cast<double>(p[1]) - 1, 2 * static_cast<double>(p[2]) - 1};
 }
 
-/// What a triangle with texture coordinates and this material becomes; every picture is `pixel`.
+/// Scene read from an OBJ of one triangle with texture coordinates and this material; every image decodes to `pixel`.
 Scene obj_with(const Folder& folder, const std::string& material, std::vector<std::uint8_t> pixel) {
     for (const char* name : {"a.png", "b.png"}) folder.write(name, "not decoded here");
     folder.write("m.mtl", "newmtl m\n" + material);

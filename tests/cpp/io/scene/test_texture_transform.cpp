@@ -1,4 +1,4 @@
-// Where a picture lies on a surface, as glTF's KHR_texture_transform and MTL's -s and -o say it.
+// Texture transforms: glTF's KHR_texture_transform and MTL's -s and -o.
 
 #include <cmath>
 

@@ -31,8 +31,7 @@ TEST_CASE("no line of help is wider than 80 columns, and none ends before it has
         INFO(lines[i]);
         CHECK(columns <= 80);
         CHECK(lines[i].find_last_not_of(' ') + 1 == lines[i].size());
-        // Where the text goes on in the next line, the longest word and the blank before it do not fit into what is
-        // left.
+        // If the text continues in the next line, the longest word and the space before it would not fit any more.
         const bool goes_on = i + 1 < lines.size() && lines[i + 1].starts_with("       ");
         if (goes_on && lines[i].find("word") != std::string::npos) CHECK(columns > 75);
     }

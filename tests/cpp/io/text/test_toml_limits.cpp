@@ -115,7 +115,7 @@ TEST_CASE("TOML that is nested without end is an error of one line, from all tha
             CHECK(message.find('\n') == std::string::npos);
         }
     }
-    // What only looks nested, and 50 levels, are read.
+    // Text that only looks nested is accepted, and so are 50 levels.
     for (const std::string& text :
          {"a = \"" + repeated("[.", many) + "\"\n", "a = '" + repeated("{.", many) + "'\n",
           "a = \"\"\"\n" + repeated("[.\"\n", many) + "\"\"\"\n", "# " + repeated("[a.", many) + "\na = 1\n",

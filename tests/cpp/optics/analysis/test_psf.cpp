@@ -1,5 +1,5 @@
-// Point spread functions: closed forms of perfect and defocused pupils, and what has to be the same whichever way it is
-// reckoned. tests/python/design/test_psf.py compares real lenses with another program's propagation.
+// Point spread functions: closed forms of perfect and defocused pupils, and results that must not depend on the method.
+// tests/python/design/test_psf.py compares real lenses with another program's propagation.
 
 #include "optics/analysis/psf.hpp"
 
@@ -62,7 +62,7 @@ double perfect(double f, double f_number, double wavelength_nm, double q_um) {
     return std::pow(2 * M_PI * field * k / (2 * M_PI), 2) / (M_PI * height * height);
 }
 
-/// Where the values fall to their first zero along x or y, in points.
+/// Position of the values' first zero along x or y, in grid points.
 double first_zero(const Psf& psf, bool along_y) {
     const auto at = [&](int i) { return along_y ? value(psf, 0, i) : value(psf, i, 0); };
     int i = 1;

@@ -1,5 +1,5 @@
-// Rays through given places of the real stop: they meet them, none is missed that the lens lets pass, and what cannot
-// be reached is said to be so.
+// Rays aimed at points of the real stop: they hit these points, every ray that the lens passes is found, and points
+// that cannot be reached are reported.
 
 #include "optics/analysis/ray_aiming.hpp"
 #include "optics/centred_lenses.hpp"
@@ -27,7 +27,7 @@ double half_field(const LensSystem& lens) {
     return std::atan(0.5 * std::hypot(lens.film_width, lens.film_height) / f);
 }
 
-/// Where a ray ends that crosses only the first `count` surfaces; its status.
+/// End point and status of a ray that is traced through the first `count` surfaces only.
 struct Met {
     Vec3d at;
     RayStatus status;
@@ -76,8 +76,8 @@ TEST_CASE("every ray that a lens lets pass is the one that is aimed at its place
             }
         }
         CHECK(tried > 12500);
-        // The stop is met within 1e-10 of its radius; the entry lies within that of its own, times the distortion of
-        // the pupil, below 10 here.
+        // The ray hits the stop within 1e-10 of the stop's radius; relative to the pupil's radius, the error of the
+        // entry is that times the distortion of the pupil, below 10 here.
         hold({"Truth", "rays aimed at the real stop against those that pass, entry over pupil radius",
               std::to_string(tried) + " rays of every bundled lens, object " +
                   (std::isfinite(object_distance) ? "near" : "at infinity"),
@@ -196,7 +196,7 @@ TEST_CASE("rays that are aimed together are those that are aimed one by one") {
     compare(bladed, 0.2);
     for (std::size_t k = 0; k < loops.size(); ++k) {
         CHECK(led[k] > 0.9 * static_cast<double>(tried));
-        // Both meet the stop within 2.5e-11 of its radius; what becomes of that as above.
+        // Both rays hit the stop within 2.5e-11 of its radius; the pupil's distortion magnifies this, as above.
         hold({"Truth", "rays aimed together against those aimed one by one: entry, path, direction",
               "every bundled lens, 2 fields x 1027 places", loops[k].first, "float64", worst[k], 1e-9, "of the pupil"});
     }

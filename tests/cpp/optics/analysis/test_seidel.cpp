@@ -190,7 +190,7 @@ TEST_CASE("the Lagrange invariant of the sums is the same behind every surface o
             const SeidelRow& row = table.surfaces[i];
             const double a = sign * n[i + 1] * row.chief.slope * row.marginal.height;
             const double b = sign * n[i + 1] * row.marginal.slope * row.chief.height;
-            // Of the products that are subtracted.
+            // Magnitude of the products that are subtracted.
             const double scale = std::fabs(a) + std::fabs(b) + std::fabs(table.lagrange_invariant);
             worst = std::max(worst, std::fabs(a - b - table.lagrange_invariant) / scale);
         }
@@ -210,8 +210,8 @@ LensSystem with_share(LensSystem lens, double share, double object) {
     return lens;
 }
 
-/// Optical path differences of real rays at four places on the edge of the stop, over share^4; and the distortion of
-/// the chief ray, mm, over share^3.
+/// Optical path differences of real rays through four points on the edge of the stop, divided by share^4; and the
+/// distortion of the chief ray, mm, divided by share^3.
 std::array<double, 5> real_aberrations(const LensSystem& whole, double share, double tangent, double object) {
     const LensSystem lens = with_share(whole, share, object);
     const FieldPoint field{std::atan(share * tangent), object};
@@ -251,7 +251,7 @@ TEST_CASE("real wavefronts and chief rays of every lens go over into the third-o
             const std::array<double, 5> third = {edge + w.w131, edge - w.w131, w.w040 + w.w220,
                                                  w.w040 + w.w220 + c * w.w131 + c * c * w.w222,
                                                  table.transverse(sum).distortion};
-            // The sum may be much smaller than what the surfaces add to it, which is what fifth order grows from.
+            // The sum may be much smaller than the contributions of the surfaces, which determine the fifth order.
             double size_waves = 0, size_mm = 0;
             for (const SeidelRow& row : table.surfaces) {
                 const WaveCoefficients v = table.waves(row);

@@ -40,7 +40,7 @@ double largest(const Wavefront& w) {
 
 TEST_CASE("optical path differences and ray aberrations of the CODE V double Gauss") {
     LensSystem lens = io::read_lens("double-gauss-100mm");
-    // Nothing is vignetted by a rim; the listing has its own vignetting.
+    // Clear semi-diameters that do not vignette: the listing has its own vignetting.
     for (Surface& s : lens.surfaces)
         if (s.type != SurfaceType::stop) s.clear_semi_diameter = s.curvature == 0 ? 100 : 0.99 / std::fabs(s.curvature);
     const LensPath<double> path(lens, LightDirection::to_film, lens.wavelength_nm);
@@ -87,8 +87,8 @@ TEST_CASE("optical path differences and ray aberrations of the CODE V double Gau
             const double sagittal = -(beside.points[0].x - beside.points[1].x) / (slope(0) - slope(1));
             const double tangential = -(beside.points[2].y - beside.points[3].y) / (slope(2) - slope(3));
             CHECK(std::fabs(sagittal - field.x_focus) < 1e-6);
-            // The listed ones differ from the limit by 2.2e-5 and -1.5e-5: what a difference to one side leaves, of one
-            // ray 5e-4 of the pupil above the chief ray, where there is coma.
+            // The listed foci differ from the limit by 2.2e-5 and -1.5e-5: the error, in the presence of coma, of a
+            // one-sided difference with a ray 5e-4 of the pupil above the chief ray.
             CHECK(std::fabs(tangential - field.y_focus) < 2.5e-5);
             const AimedRay chief = w.rays.chief;
             const ObjectPoint object(lens, lens.wavelength_nm, point);
@@ -283,7 +283,7 @@ TEST_CASE("optical path differences agree with the same rays in fifty digits") {
                     worst = std::max(worst, std::fabs(error));
                     ++tried;
                     if (!std::isfinite(object)) continue;
-                    // What the whole lengths from the object would leave in double precision.
+                    // Error of the difference of the full distances from the object in double precision.
                     const double distance = 1 / from.inverse_distance;
                     const ObjectPoint::Entry e = w.rays.rays[i].entry, c = w.rays.chief.entry;
                     const double q = std::hypot(e.x, e.y), p = std::hypot(c.x, c.y);

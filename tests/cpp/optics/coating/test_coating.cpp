@@ -34,8 +34,8 @@ Coating three_layers() {
 
 }  // namespace
 
-// Of a lens's surfaces the two directions meet the films in opposite orders; their transmittances are equal, with
-// absorption too, and what is neither reflected nor transmitted is absorbed.
+// Light in the two directions crosses a surface's films in opposite orders. Both transmittances are equal, with
+// absorption too, and light that is neither reflected nor transmitted is absorbed.
 TEST_CASE("surfaces of lenses let light through both ways alike and lose none of it") {
     double asymmetry = 0, residue = 0;
     int cases = 0;

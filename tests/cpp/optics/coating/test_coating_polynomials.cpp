@@ -31,12 +31,12 @@ LensSystem coated(LensSystem lens, const Coating& coating) {
 }
 
 struct Errors {
-    double worst = 0;  ///< of all angles
-    double worst_below_73 = 0;  ///< of angles up to 73 degrees, whose cosine is 0.3
-    double worst_mirror = 0;    ///< of mirrors, all angles
+    double worst = 0;           ///< largest error at any angle
+    double worst_below_73 = 0;  ///< largest error at angles up to 73 degrees, whose cosine is 0.3
+    double worst_mirror = 0;    ///< largest error of mirrors, at any angle
 };
 
-/// Of all surfaces at one wavelength.
+/// Adds the errors of all surfaces at one wavelength to `errors`.
 template <int terms>
 void compare(const LensSystem& lens, LightDirection direction, double wavelength_nm,
              const std::vector<CoatingPolynomials<terms>>& fitted, float variable, Errors& errors) {
@@ -47,7 +47,7 @@ void compare(const LensSystem& lens, LightDirection direction, double wavelength
         const double before = std::sqrt(view.index_squared);
         const double square_behind = view.index_squared * (1 + view.squared_index_change);
         for (int i = 1; i <= 100; ++i) {
-            // Of the medium with the lower index, so that there is light on both sides.
+            // Cosine in the medium with the lower index, so that there is no total internal reflection.
             const double cosine = i / 100.0, lower = std::min(before, std::sqrt(square_behind));
             const double component = lower * cosine;
             const double in = std::sqrt(component * component + view.index_squared - lower * lower);
@@ -87,8 +87,8 @@ TEST_CASE("polynomials in the cosine follow all coatings at one wavelength") {
                 compare(lens, direction, lens.wavelength_nm,
                         fit_coatings<kOneWavelengthTerms>(lens, direction, {lens.wavelength_nm}), 0, errors);
             }
-    // 1e-4 of the light at each of twenty surfaces is half a code value of 255. Glass of n = 2.0, of which
-    // zoom-11-24mm has one element, takes 1.3e-4.
+    // 1e-4 of the light at each of twenty surfaces is half a code value of 255. Glass of n = 2.0 has an error
+    // of 1.3e-4; zoom-11-24mm has one element of it.
     hold({"Effects", "transmittance of a coated surface, up to 73 degrees", "all lenses, 3 coatings", "core", "float32",
           errors.worst_below_73, 1.5e-4, ""});
     hold({"Effects", "transmittance of a coated surface, all angles", "all lenses, 3 coatings", "core", "float32",

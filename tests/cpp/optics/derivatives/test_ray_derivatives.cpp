@@ -87,7 +87,7 @@ double error_of(const SevenNumbers& wanted, const std::function<double(int)>& fo
             error += (wanted[k] - found(i)) * (wanted[k] - found(i));
             size += wanted[k] * wanted[k];
         }
-        // What does not depend on the variable must be 0 but for roundings.
+        // A derivative of a value that does not depend on the variable must be 0 within rounding.
         worst = std::max(worst, static_cast<double>(sqrt(error) / std::max(sqrt(size), Real(least))));
     }
     return worst;

@@ -68,7 +68,7 @@ TEST_CASE("a ghost is the image of a lens whose reflecting surfaces are mirrors"
                     s.thickness = -surface(k - 1).thickness;
                     unfolded.surfaces.push_back(s);
                     s = surface(k - 1);
-                    // Behind it, for light that goes back, lies what is in front of it.
+                    // For reversed light, the medium behind the surface is the one in front of it.
                     s.material = k - 1 > 0 ? surface(k - 2).material : Glass::air();
                     if (k - 1 > 0 && surface(k - 2).type == SurfaceType::stop) s.material = Glass::air();
                 }

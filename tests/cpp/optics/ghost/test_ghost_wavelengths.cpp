@@ -1,4 +1,5 @@
-// What ghosts keep of light of one wavelength in a picture of many, against a lens that is made for that wavelength.
+// Power of ghosts at one wavelength of a polychromatic picture, against a lens that is set up for that wavelength
+// alone.
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ using namespace realcam;
 using namespace realcam::test;
 
 constexpr int kRays = 16;
-constexpr std::size_t kMostPairs = 10;  ///< of a lens, spread over all that it has
+constexpr std::size_t kMostPairs = 10;  ///< largest number of ghost pairs per lens, a regular subsample
 
 LensSystem coated(LensSystem lens, const Coating& coating) {
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
@@ -48,12 +49,12 @@ LensRays<float, kRays> bundle(const LensSystem& lens, const LensPath<float>& pat
     return rays;
 }
 
-/// The sum over the rays that pass both ways through the lens.
+/// Power summed over the rays that pass the lens in both traces: for many wavelengths, and for one.
 struct Passed {
     double of_many = 0, of_one = 0;
 };
 
-/// What light does at each crossing that a way may have, in a picture with these wavelengths.
+/// Coatings and indices at each crossing that a ghost path may have, in a picture with these wavelengths.
 template <int kTerms>
 struct Crossings {
     std::vector<Crossing> all;
@@ -66,7 +67,7 @@ struct Crossings {
                                   fitted_nm, variable_over(range))),
           indices(index_cubics(lens, all, fitted_nm, variable_over(range))) {}
 
-    /// Of one way, in the order in which it meets them.
+    /// Selects the values of one path's crossings, in the order of the path.
     template <class Value>
     static std::vector<Value> along(const std::vector<Crossing>& crossings, const std::vector<Value>& of_all) {
         std::vector<Value> met;
@@ -75,8 +76,8 @@ struct Crossings {
     }
 };
 
-/// Of pairs together, in both directions: of a picture with wavelengths from `range`, of which this is one, and of
-/// one wavelength. Nothing where no light passes.
+/// Traces ghost pairs in both directions and sums their power, for a picture with wavelengths from `range`, which
+/// contains `wavelength_nm`, and for this wavelength alone. Returns std::nullopt if no light passes.
 std::optional<Passed> ghosts_of(const LensSystem& lens, double wavelength_nm, WavelengthRange range,
                                 const std::vector<double>& fitted_nm) {
     LensSystem made_for_it = lens;
@@ -152,7 +153,7 @@ TEST_CASE("ghosts under a line of light are those of a lens made for it") {
 
 TEST_CASE("ghosts in white light are at each wavelength those of a lens made for it") {
     const FilmSpectrum white{Illuminant()};
-    // As a share of the mean over the wavelengths, which is what a picture shows.
+    // Relative to the mean over the wavelengths, which determines the picture.
     const auto worst_with = [&](const Coating& coating) {
         double worst = 0;
         for (const char* const name : {"achromat-75mm", "double-gauss-50mm", "phone-4mm"}) {

@@ -1,5 +1,6 @@
 #pragma once
-// What a camera records of a uniform environment: the camera's own rays, their weights, and whether they are numbers.
+// Picture that a camera takes of a uniform environment, from the camera's own rays and weights, and a check that these
+// are finite.
 
 #include <cmath>
 #include <string>
@@ -39,7 +40,7 @@ inline FieldPicture photograph(const LensSystem& lens, double film_mm, int pixel
     return picture;
 }
 
-/// What the camera says that cannot take the picture.
+/// Message of the error of a camera that cannot take the picture.
 inline std::string camera_error(const LensSystem& lens, CameraModel model = CameraModel::full_lens) {
     return message_of([&] { photograph(lens, 10, 4, 16, model); });
 }

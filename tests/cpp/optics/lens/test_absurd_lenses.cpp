@@ -1,5 +1,5 @@
-// Lenses that no one should make, as large, small, steep and dense as validate() lets them be: focus, stop, pupil and
-// camera end, with numbers or with an error that says why.
+// Unrealistic lenses, as large, small, steep and dense as validate() allows: focus, stop, pupil and camera terminate
+// with finite numbers or with an error that states the reason.
 
 #include <cmath>
 #include <string>
@@ -65,7 +65,7 @@ LensSystem absurd_lens(Random& random, double decades) {
 struct Outcomes {
     int lenses = 0, numbers = 0, errors = 0, wrong = 0;
 
-    /// What is not a number must be an error.
+    /// Calls f, which returns true if its results are numbers. Any other result must be thrown as an Error.
     template <class F>
     void take(const char* what, F&& f) {
         CAPTURE(std::string(what));

@@ -39,7 +39,7 @@ private:
     FilmPointTracer trace_;
 };
 
-// The mirror lens's hole is larger than its stop from f/13.5 on: it is dark then, as it would be.
+// From f/13.5 on, the mirror lens's hole is larger than its stop, so that the real lens would be dark too.
 bool is_dark(const std::string& name, double f_number) {
     return name == "mirror-telephoto-500mm" && f_number > 13.5;
 }
@@ -69,9 +69,9 @@ double axial_irradiance(const LensSystem& lens) {
 }
 
 // The source paper's equations 6 and 7 over the last surface: integral of cos(theta') cos(theta'') / d^2 dA
-// over the points that see the scene. On an even grid in x and y: a coarse one finds the part with light, first of the
-// whole surface, then of what it found; a fine one sums over that part. Without blades one half
-// of the surface gives a film point on the axis as much light as the other.
+// over the points that see the scene, on a uniform grid in x and y. A coarse grid finds the part with light, first of
+// the whole surface, then of the part found; a fine grid sums over it. Without blades both halves of the surface give a
+// film point on the axis the same light.
 double irradiance_over_last_surface(const LensSystem& lens, double film_x, double film_y) {
     constexpr int kBlock = 128, kCoarse = 96, kFine = 160;
     const Surface& last = lens.surfaces.back();
@@ -152,7 +152,7 @@ void check_relative_illumination(const LensSystem& lens, const SampledIrradiance
         const double found = sampled(x, y, 1 << 12) / on_axis;
         CAPTURE(truth);
         CAPTURE(found);
-        // 1% is what is asked for; where next to nothing is left, 0.1% of the light on the axis.
+        // The requirement is 1%, or 0.1% of the light on the axis where there is hardly any light.
         CHECK(std::fabs(found - truth) <= std::max(0.01 * truth, 0.001));
     }
 }
@@ -177,9 +177,10 @@ TEST_CASE("light on the axis is pi sin^2(theta'), a quarter two stops down, and 
                 continue;
             }
             REQUIRE(truth > 0);
-            // Of 16384 stratified samples about 3% miss: 0.07%. What is asked for is 0.5%.
+            // About 3% of the 16384 stratified samples miss: an error of 0.07%. The requirement is 0.5%.
             CHECK(on_axis == about(truth, 0.002));
-            // The brute-force integral that the rest relies on: the light covers 140 x 140 points of its grid or more.
+            // The brute-force integral, on which the other checks rely: the light covers at least 140 x 140 grid
+            // points.
             if (f_number != 11) {
                 const double by_integral = irradiance_over_last_surface(lens, 0, 0);
                 CHECK(by_integral == about(truth, 0.003));

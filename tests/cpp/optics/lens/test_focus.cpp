@@ -41,7 +41,7 @@ double rms_spot(const LensSystem& lens, double object_distance, double plane) {
 }
 
 void check_best_focus(const LensSystem& lens) {
-    const double object = lens.focus_distance - lens.film_position();  // the object plane to film is what was asked
+    const double object = lens.focus_distance - lens.film_position();  // focus distances are measured from the film
     const double best = rms_spot(lens, object, lens.film_distance);
     // The squared spot is a parabola of the plane: its middle lies between two planes that have the same
     // spot. A hundredth of the diffraction-limited depth of focus, 2 lambda N^2, is 0.05 mm at f/5.6 and
@@ -54,7 +54,7 @@ void check_best_focus(const LensSystem& lens) {
     CHECK(after > best);
     const double a = before * before + after * after - 2 * best * best;
     const double middle = 0.5 * step * (before * before - after * after) / a;
-    // Of its 256 heights about half pass, so the edge of the pupil is uncertain by 1/250 of its area; with
+    // About half of the focus search's 256 rays pass, so the edge of the pupil is uncertain by 1/250 of its area; with
     // half a millimetre of spherical aberration, as at f/2 here, that moves the focus by a few um.
     CHECK(std::fabs(middle) < 0.3 * step);
 }
@@ -94,7 +94,7 @@ TEST_CASE("refocusing forgets where the lens was focused before") {
     for (const char* name : {"double-gauss-50mm", "telephoto-200mm-inner-focus"}) {
         const LensSystem lens = focused(io::read_lens(name), kInfinity);
         const LensSystem direct = focused(lens, 5000), detour = focused(focused(lens, 2600), 5000);
-        // Two bisections that end within rounding of the same root; object to film is kept to 1e-9 of 5 m.
+        // Both bisections end within rounding of the same root; the object-to-film distance is accurate to 1e-9 of 5 m.
         CHECK(std::fabs(direct.film_distance - detour.film_distance) < 1e-5);
         CHECK(std::fabs(direct.surfaces[12 % direct.surfaces.size()].thickness -
                         detour.surfaces[12 % detour.surfaces.size()].thickness) < 1e-5);
@@ -165,7 +165,7 @@ TEST_CASE("stopping down divides the entrance pupil by the f-number") {
 TEST_CASE("focusing and stopping down commute: an f-number is that of the lens at infinity") {
     const LensSystem far = io::read_lens("telephoto-200mm-inner-focus");
     const LensSystem near = focused(far, 3000);
-    // The group that moves changes the lens: what it is as focused differs from what is engraved on it.
+    // The moving group changes the lens: its f-number as focused differs from the engraved one.
     CHECK(first_order(near, kLineD_nm).f_number < 0.99 * first_order(far, kLineD_nm).f_number);
     CHECK(f_number_at_infinity(near) == about(first_order(far, kLineD_nm).f_number, 1e-6));
     const LensSystem a = stopped_down(near, 4), b = focused(stopped_down(far, 4), 3000);

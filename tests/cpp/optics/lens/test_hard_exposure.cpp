@@ -45,8 +45,8 @@ LensSystem hole(double radius, double distance) {
     return with_film(lens_of({stop_plane(0, radius)}), distance, distance);
 }
 
-/// Of a film point beside the axis under a round source that faces it (P. D. Foote, Scientific Papers of the Bureau of
-/// Standards 263, 1915).
+/// Irradiance of an off-axis film point under a parallel round source of radiance 1 (P. D. Foote, Scientific Papers of
+/// the Bureau of Standards 263, 1915).
 double irradiance_under_hole(double radius, double distance, double off_axis) {
     const double z2 = distance * distance, r2 = off_axis * off_axis, a2 = radius * radius;
     const double sum = z2 + r2 + a2;
@@ -110,7 +110,7 @@ TEST_CASE("a hole from f/0.25 to f/500 lights the film beside the axis as its cl
 }
 
 TEST_CASE("a lens whose entrance pupil lies at infinity takes pictures by the models that have a place for it") {
-    // The stop stands in the focal plane behind a thin lens of 200 mm, and a second lens makes the picture.
+    // The stop is in the rear focal plane of a thin lens of 200 mm, and a second lens forms the image.
     const Glass glass = Glass::constant(1.5);
     const LensSystem lens =
         with_film(lens_of({refracting(100, 0, glass, 30), refracting(0, 200, Glass::air(), 30), stop_plane(20, 4),

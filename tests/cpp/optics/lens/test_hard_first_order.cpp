@@ -129,7 +129,7 @@ TEST_CASE("an afocal system has infinite focal lengths, and no focus or f-number
         afocal.push_back(lens_of(surfaces));
     }
     afocal.push_back(lens_of({stop_plane(0, 10)}));
-    // Of indices and radii that are no powers of two: what is left of its power is rounding.
+    // With indices and radii that are not powers of two, the computed power is only rounding error.
     for (const double n : {1.5168, 1.62, 1.7})
         for (const double r : {-77.7, -30.1}) {
             const double ocular = r / (n - 1), f = -2.7 * ocular;
@@ -157,7 +157,7 @@ TEST_CASE("an afocal system has infinite focal lengths, and no focus or f-number
 
 TEST_CASE("a stop in a focal plane has its pupil at infinity, and the other figures stay finite") {
     for (const double r : {64.0, 77.7, 50.1}) {
-        const double f = r / 0.5168;  // thin, of index 1.5168: what is left of the pupil's inverse distance is rounding
+        const double f = r / 0.5168;  // thin, of index 1.5168: the pupil's inverse distance is only rounding error
         const std::vector<Surface> thin{refracting(r, 0, Glass::constant(1.5168), 10),
                                         refracting(0, f, Glass::air(), 10)};
         std::vector<Surface> behind = thin, before{stop_plane(f, 3)};

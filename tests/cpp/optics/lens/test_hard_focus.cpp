@@ -27,8 +27,8 @@ double object_of(const LensSystem& focused_lens) {
     return focused_lens.focus_distance - focused_lens.film_position();
 }
 
-/// How far from where it was asked for the object plane lies whose rays make the smallest spot on the film, by the way
-/// back: relative.
+/// Relative error of the focus distance: of the object plane with the smallest spot on the film, found by tracing back
+/// from the film.
 double misfocus(const LensSystem& lens) {
     const double object = object_of(lens);
     LensSystem open = lens;

@@ -1,4 +1,4 @@
-// Polynomials in place of a lens.
+// Polynomials that approximate a lens.
 
 #include "optics/lens/lens_polynomial.hpp"
 
@@ -21,8 +21,8 @@ LensPolynomial fitted(const LensSystem& lens, double film_radius) {
 
 }  // namespace
 
-// A pixel is 5 um wide: the picture of such polynomials cannot be told from the lens's, so that what they cost can be
-// compared with what the lens costs.
+// A pixel is 5 um wide: pictures by these polynomials are indistinguishable from the lens's, so that the cost of both
+// can be compared.
 TEST_CASE("a double Gauss is a polynomial of some degree") {
     const LensSystem lens = io::read_lens("double-gauss-50mm");
     const LensPolynomial polynomial = fitted(lens, 21.6);
@@ -44,7 +44,7 @@ TEST_CASE("turned about the axis, a lens makes the same ray, turned") {
     same(turned(ray.at_stop), other.at_stop);
 }
 
-// A ray's slope here is 5e-3 at most, and its seventh power less than what float32 tells apart.
+// A ray's slope here is 5e-3 at most, and its seventh power is below the resolution of float32.
 TEST_CASE("a lens that hardly bends light needs no high powers") {
     LensSystem lens = lens_of(
         {stop_plane(0, 0.5), refracting(1000, 1, Glass::constant(1.5), 5), refracting(-1000, 0, Glass::air(), 5)});

@@ -46,7 +46,7 @@ TEST_CASE("stops down to nothing: the right exposure or a clear error, on the ax
     // The pupil's own size changes the exposure by its square, 1e-5; double precision knows the axis to 1e-9 there.
     hold({"Lenses", "stops of 0.1 mm down to 1e-20 mm: irradiance on the axis goes with their area", "37 radii", "core",
           "float64", worst_axis, 1e-4, "of it"});
-    // 16384 samples, of which at most half miss.
+    // The noise of 16384 samples, at most half of them lost.
     hold({"Lenses", "small stops that are not refused: irradiance of the film goes with their area",
           std::to_string(taken) + " radii", "core", "float32", worst, 0.02, "of it"});
 }

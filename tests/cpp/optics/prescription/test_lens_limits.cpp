@@ -50,7 +50,7 @@ TEST_CASE("lengths, curvatures, conics and coefficients that no lens has are ref
     CHECK(names(complaint([](LensSystem& l) { l.surfaces[0].aspheric = {1e10}; }), "aspheric"));
     CHECK(names(complaint([](LensSystem& l) { l.film_width = 1e10; }), "film"));
     CHECK(names(complaint([](LensSystem& l) { l.iris.rotation_rad = std::nan(""); }), "iris"));
-    // What the hard cases of a lens need is allowed.
+    // The values of the hard cases of lenses are allowed.
     CHECK(complaint([](LensSystem& l) {
               l.surfaces[0].thickness = 1e8;
               l.surfaces[0].conic = -1e3;

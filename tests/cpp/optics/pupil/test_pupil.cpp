@@ -124,7 +124,7 @@ TEST_CASE("a pupil found near that of a similar state holds all that passes, and
         for (LensState state : states_of(name)) {
             const double radius = half_diagonal(state.lens);
             const Pupil before(state.lens, radius);
-            // As a turn of two rings changes it from one frame to the next.
+            // A change of aperture and focus from one frame to the next.
             state.lens.stop_semi_diameter *= 0.99;
             state.lens.film_distance *= 1.0005;
             state.description += ", a little later";
@@ -257,7 +257,7 @@ TEST_CASE("the lens ends the image, whatever the size of the film that it is on"
             lens.stop_semi_diameter = share * open;
             const double edge = Pupil(lens, 21.6).image_radius();
             REQUIRE(edge < 21.6);
-            // A search is done where its steps are a hundred-thousandth, on the dark side.
+            // The search ends on the dark side, at relative steps of 1e-5.
             CHECK(Pupil(lens, 80).image_radius() == about(edge, 3e-5));
             CHECK(Pupil(lens, 1.2 * edge).image_radius() == about(edge, 3e-5));
         }

@@ -1,4 +1,4 @@
-// The pupil by the place on the film. A centred lens has it too, and there the radial table says the same.
+// Pupil tables over both film coordinates. For a centred lens they agree with the radial table.
 
 #include <cmath>
 #include <string>

@@ -68,7 +68,7 @@ TEST_CASE("sample_pupil follows pupil_pdf, from the axis to the edge of the imag
         tests.add(in_direction_cosines(
             view, x, y, [&](Vec2f u) { return sample_pupil(view, x, y, u.x, u.y).direction; }, seed++));
     }
-    // Of the density, 1.3e-3 lie in bins where 700 points of a rule meet an edge.
+    // 1.3e-3 of the density lies in bins in which 700 points of a quadrature rule meet an edge.
     tests.hold(3e-3);
 
     const LensSystem lens = lens_at(kPoints[1]);

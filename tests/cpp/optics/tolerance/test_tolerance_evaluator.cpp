@@ -20,9 +20,9 @@ using namespace realcam;
 using namespace realcam::test;
 
 constexpr double kIndex = 1.5, kRadius = 20, kRim = 1.5;
-constexpr double kFocus = kIndex * kRadius / (kIndex - 1);  ///< of the surface, behind its vertex
+constexpr double kFocus = kIndex * kRadius / (kIndex - 1);  ///< focus of the surface, behind its vertex
 
-constexpr double kSlope = kRim / kFocus;  ///< of the rays from the rim, nearly
+constexpr double kSlope = kRim / kFocus;  ///< approximate slope of the rays from the rim
 
 /// A stop on an ellipsoid of glass with k = -1 / n^2, which images infinity perfectly on the axis, at f/20 in glass.
 /// The film is in the glass, `defocus` behind the focus.

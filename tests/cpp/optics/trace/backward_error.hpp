@@ -1,7 +1,7 @@
 #pragma once
-// How wrong a ray is behind one surface, in units that stay small for every ray. A tangent ray moves its point by far
-// when it is shifted by one rounding; its distances from the line and from the surface, and what is amiss in Snell's
-// law for the surface's own normal there, stay of the order of roundings.
+// Backward error of a ray behind one surface, which is small for every ray. Shifting a tangent ray by one rounding
+// moves its hit far; but the hit's distances from the line and from the surface, and the residual of Snell's law with
+// the surface's own normal there, stay of the order of roundings.
 
 #include <algorithm>
 

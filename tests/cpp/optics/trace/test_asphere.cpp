@@ -105,7 +105,7 @@ void check_aspheres_of(const char* name, double terms_mm) {
             REQUIRE(ray.passed());
             ++compared;
             // The search stops within 4 roundings of its lengths, a few mm, and of the terms, whose sum may be off by
-            // as much. A grazing ray turns what is off along the axis into more along the surface.
+            // as much. For a grazing ray, an axial error becomes a larger one along the surface.
             const Real tolerance = (1e-14L + 8 * std::numeric_limits<double>::epsilon() * terms_mm) / cosine;
             CHECK(std::fabs(ray.origin.x - truth.x) < tolerance);
             CHECK(std::fabs(ray.origin.y - truth.y) < tolerance);
@@ -126,7 +126,7 @@ TEST_CASE("rays meet the aspheres of the phone lens where an independent search 
     check_aspheres_of("phone-4mm", 6);
 }
 
-// Powers of r^2 alone add up to 1700 mm there, of which 4 are left.
+// The terms in powers of r^2 have magnitudes of up to 1700 mm in total there, and add up to 4 mm.
 TEST_CASE("so they do where the terms of an asphere are hundreds of times as large as their sum, and none is lost") {
     check_aspheres_of("phone-4mm-seven-elements", 18);
     const LensSystem phone = io::read_lens("phone-4mm-seven-elements");
@@ -198,7 +198,7 @@ TEST_CASE("an absurd asphere ends rays with a status, and lets none through that
 
 namespace {
 
-/// Met on the way to the scene; polynomial and bounds are still to come.
+/// An asphere in air for rays towards the scene, without its polynomial and bounds, which the caller sets.
 SurfaceView<float> asphere_in_air(float curvature) {
     SurfaceView<float> step{};
     step.kind = SurfaceShape::asphere;
@@ -213,7 +213,7 @@ SurfaceView<float> asphere_in_air(float curvature) {
 }  // namespace
 
 TEST_CASE("a guess that is a root to the last digit, but in the wrong direction, does not end the search") {
-    // Found by fuzzing: where the ray meets the base sphere, it grazes the asphere from the other side.
+    // Found by fuzzing: at its intersection with the base sphere, the ray grazes the asphere from the other side.
     SurfaceView<float> step = asphere_in_air(-0.000786048942245543f);
     step.rim_squared = 460218.562f;
     step.sag_min = -143.261475f;
@@ -237,7 +237,7 @@ TEST_CASE("a guess that is a root to the last digit, but in the wrong direction,
 }
 
 TEST_CASE("a sphere and a polynomial that nearly cancel leave roundings that the search puts up with") {
-    // Found by fuzzing: heights of -57 and +59 mm, of which 1.9 remain. With fused products the search had no end.
+    // Found by fuzzing: heights of -57 and +59 mm, whose sum is 1.9 mm. With fused products the search did not end.
     SurfaceView<float> step = asphere_in_air(-0.008210781f);
     step.rim_squared = step.search_squared = 14833.0703f;
     step.inverse_search_squared = 6.74169278e-05f;

@@ -1,4 +1,4 @@
-// Rays that meet an asphere without a bracket: only those that cross it once, wherever they come from.
+// Rays for which the search on an asphere needs no bracket: they must cross the asphere once, whatever their origin.
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,8 @@ Surface wavy_asphere(Random& random) {
     return surface;
 }
 
-/// Of the height of a ray over the surface, which goes on as a plane outside the search radius, along the whole ray.
+/// Number of sign changes, along the whole ray, of its height above the surface, which is extended by a plane outside
+/// the search radius.
 int sign_changes(const SurfaceView<double>& surface, Vec3d o, Vec3d p) {
     const double reach = std::sqrt(surface.search_squared), margin = surface.sag_max - surface.sag_min + reach;
     constexpr int kSteps = 4000;

@@ -1,4 +1,4 @@
-// Surfaces that are no conics of revolution: closed forms, and what holds of every hit.
+// Surfaces other than conics of revolution: closed forms, and the laws that hold for every hit.
 
 #include <cmath>
 #include <numbers>
@@ -43,7 +43,7 @@ TracedRay meet(const Surface& surface, Vec3d from, Vec3d towards) {
     return RayTracer(alone(surface), LightDirection::to_film)(from, towards);
 }
 
-/// Every kind of form, none of them of small parts.
+/// One surface of every kind of form, with large coefficients.
 std::vector<Surface> some_freeforms() {
     std::vector<Surface> list;
     const auto add = [&](double radius, const SurfaceForm& form) {
@@ -221,7 +221,7 @@ TEST_CASE("terms of r^2 bend a surface at first order as its radius does") {
     };
     CHECK(focal_length(bent) == about(focal_length(plain), 1e-13));
     CHECK(forbes.vertex_curvature() == about(1 / 50.0 + 2 * 0.1 / 100, 1e-14));
-    // And so says a real ray near the axis.
+    // A real ray near the axis has the same focal length.
     const double near = 1e-4;
     const LensSystem lens = lens_of({forbes, back, stop_plane(0, 5)});
     const TracedRay ray = RayTracer(lens, LightDirection::to_film)({0, near, -1}, {0, 0, 1});

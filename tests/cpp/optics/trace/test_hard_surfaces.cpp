@@ -1,6 +1,5 @@
-// One surface at a time, from a plane of curvature 1e-12 to a hemisphere, conics of -1e3 to 1e3 and aspheres that turn
-// back or stand on end: where the trace says that a ray met it and how it went on, against the surface's equation in 50
-// digits.
+// One surface at a time, from a plane of curvature 1e-12 to a hemisphere, conics of -1e3 to 1e3 and aspheres with a
+// reversed or vertical slope: the hits and directions of traced rays against the surface's equation in 50 digits.
 
 #include <algorithm>
 #include <cmath>
@@ -104,11 +103,11 @@ void add_rays(const Surface& surface, Random& random, int count, RayBatch& rays)
 
 struct Worst {
     BackwardError error;
-    double decision = 0;  ///< the farthest from an edge that a ray was decided otherwise than by the oracle
+    double decision = 0;  ///< largest distance from an edge of a ray on which backend and oracle disagree
     long compared = 0;
 };
 
-/// What the oracle says of a ray at one surface.
+/// The oracle's decision on a ray at one surface, and its relative distance from an edge, where it would change.
 struct Verdict {
     bool passes;
     double clearance;

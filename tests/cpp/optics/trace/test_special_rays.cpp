@@ -305,7 +305,8 @@ TEST_CASE("rays from as far away as a star reach the film where they do in 50 di
 
 namespace {
 
-/// Whether the rays pass, as a picture's lanes trace them and as a GPU's thread does, both without a record.
+/// For each ray: true if it passes, traced without a path record in N lanes, as for a picture (8) or on a GPU thread
+/// (1).
 template <int N>
 std::vector<bool> passes_without_record(const LensPath<float>& path, const RayBatch& rays) {
     std::vector<bool> passes;
@@ -344,7 +345,7 @@ TEST_CASE("a backward ray on the axis does not meet the far end of a nearly flat
                     CAPTURE(surface.curvature);
                     CAPTURE(bend);
                     CAPTURE(i);
-                    // A crossing in the wrong direction is none, however far along the axis the conic closes again.
+                    // An intersection in the wrong direction does not count, however far away the conic closes again.
                     CHECK(!out.passed(i));
                     CHECK(!one[i]);
                     CHECK(!eight[i]);

@@ -1,4 +1,4 @@
-// Shapes that are kept for the next trace belong to one surface alone.
+// A shape cached for the next trace is used only for the surface that it was made from.
 
 #include <thread>
 #include <vector>
@@ -10,7 +10,7 @@ using namespace realcam;
 
 namespace {
 
-/// What is made of a surface that nobody has asked for before: a thread begins with nothing kept.
+/// Shape of a surface computed from scratch, in a new thread, because each thread starts with an empty cache.
 TracedShape<double> made_anew(const Surface& surface) {
     TracedShape<double> shape;
     std::thread([&] { shape = traced_shape<double>(surface); }).join();
@@ -52,7 +52,7 @@ TEST_CASE("a surface that differs in anything that shapes it is made ready anew"
     surfaces.push_back(surfaces[6]);
     surfaces[8].aperture_shape.kind = ApertureOutline::rectangle;
     surfaces[8].aperture_shape.half = {6, 4};
-    // More than are kept, so that some are dropped and come again.
+    // More surfaces than the cache holds, so that some are evicted and computed again.
     for (int i = 1; i <= 80; ++i) {
         surfaces.push_back(asphere);
         surfaces.back().curvature = 1e-4 * i;

@@ -28,7 +28,7 @@ TEST_CASE("each pixel is developed with its own number of samples") {
 }
 
 TEST_CASE("what a pixel has too much of one colour by chance is taken out, and what all have is kept") {
-    // An evenly lit film of 6 lux, of whose light the lens passes a tenth more in red and a tenth less in blue.
+    // A uniform film of 6 lux; the lens passes a tenth more of the light in red and a tenth less in blue.
     constexpr double kChance = 0.1;
     const PixelSum even = {{6600, 6000, 5400}, {100, 0, -100}, 0, 0, 1000, 1000};
     FilmSums film(81, even);
@@ -70,11 +70,11 @@ TEST_CASE("a pixel of which more samples pass by chance is as bright as its neig
     CHECK(exposure(30) == doctest::Approx(kLux * kMean).epsilon(1e-6));
     CHECK(exposure(0) == doctest::Approx(kLux * 0.98).epsilon(1e-6));
 
-    // Pixels with other numbers of samples, of which the same share passes.
+    // Pixels with different numbers of samples and the same pass rate.
     film[40] = with_passing(200, 196);
     CHECK(exposure(40) == doctest::Approx(kLux * 0.98).epsilon(1e-6));
 
-    // Few samples say nothing, and neither do none.
+    // With few samples, or none, the pass rate is not corrected.
     for (PixelSum& pixel : film) pixel = with_passing(6, 6);
     film[40] = with_passing(6, 5);
     CHECK(exposure(40) == doctest::Approx(kLux * 5 / 6).epsilon(1e-6));
@@ -83,7 +83,7 @@ TEST_CASE("a pixel of which more samples pass by chance is as bright as its neig
     film[40] = {};
     CHECK(exposure(40) == 0);
 
-    // Where the picture ends, and where less and less of it passes from column to column, each keeps its own.
+    // At the edge of the image, and where the pass rate falls from column to column, each pixel keeps its own rate.
     for (std::size_t i = 0; i < film.size(); ++i) film[i] = with_passing(16, i % 9 < 4 ? 16 : i % 9 == 4 ? 8 : 0);
     CHECK(exposure(39) == kLux);
     CHECK(exposure(40) == kLux / 2);

@@ -1,4 +1,4 @@
-// What a picture is of where the user says nothing: scenes whose bounding box is not what one wants to see.
+// Default subject of a picture, for scenes in which the subject is not the whole bounding box.
 
 #include <string>
 #include <vector>
@@ -74,7 +74,7 @@ TEST_CASE("an object of 0.3 m on a floor of 30 m is the subject, however the flo
     const Camera camera = framed(Assembly(plain));
     CHECK(length(camera.pose.look_at_m - Vec3d{4.15, 0.15, -5.85}) < 1e-9);
     // It fills nine tenths of the picture's height, 24 mm at 50 mm: 0.3 m from 0.3 * 50.36 / (0.9 * 24) = 0.7 m, less
-    // what the field narrows near by, in front of its near side. Seen from aside it is wider.
+    // the narrowing of the field at close distance, in front of its near side. From the side it is wider.
     CHECK(eye_z(camera) > -5.7 + 0.6);
     CHECK(eye_z(camera) < -5.7 + 0.9);
 }
@@ -168,8 +168,8 @@ TEST_CASE("ordinary objects are the subject as a whole") {
 
 namespace {
 
-/// Where a point lies in the picture, from -1 to 1 on the film's width and height, by the ideal image of the lens's
-/// focal length; z: in front of the entrance pupil, m.
+/// Image position of a point, from -1 to 1 over the film's width and height, by the ideal image of the lens's focal
+/// length; z: distance in front of the entrance pupil, m.
 Vec3d seen_at(const Camera& camera, Vec3d point_m) {
     const auto axes = camera_detail::axes_of(camera.pose);
     const FirstOrder data = first_order(camera.lens, camera.lens.wavelength_nm);
@@ -197,7 +197,7 @@ TEST_CASE("a closed room is seen from a corner that shows its content") {
     lit.points.push_back({{0, 2.4, 0}, {100, 100, 100}});
     for (Scene* scene : {&room, &lit}) furnish(*scene);
     check_whole(room);
-    // Where z is up, the room lies on its side in the same numbers.
+    // The same room with z up: its coordinates are rotated about x.
     Scene turned = room;
     for (Vec3d& p : turned.positions_m) p = {p.x, -p.z, p.y};
     for (const bool z_is_up : {false, true})

@@ -98,7 +98,7 @@ TEST_CASE("an entry is chosen exactly as often as its probability says, by all n
     breaks({"Samplers", "find_in_cdf: entries that rounded sums never choose", "209 entries from 1e-30 to 1e8", "core",
             "float32", lost, 0, "entries"});
 
-    // Nothing but one entry, and no weight at all.
+    // A single entry with a weight, and no entry with a weight.
     for (const std::vector<double>& few : {std::vector<double>{0, 0, 2, 0}, std::vector<double>{0, 0, 0, 0}}) {
         std::vector<float> table;
         append_cdf(few, table);

@@ -1,4 +1,4 @@
-// Where samples go, on pictures whose noise is known.
+// Distribution of samples over pictures of known noise.
 
 #include <cmath>
 #include <cstdint>
@@ -30,7 +30,7 @@ public:
             if (counts[i] == 0) continue;
             const double before = static_cast<double>(samples[i]), after = before + counts[i];
             for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) {
-                // What brings the variance of the mean from that of `before` to that of `after` samples.
+                // Changes the variance of the mean from that of `before` samples to that of `after` samples.
                 const double was = variance(sigma(i), before), is = variance(sigma(i), after);
                 const double keep = before > 0 ? is / was : 0;
                 errors_[c] = keep * errors_[c] + std::sqrt(std::max(0.0, is - keep * keep * was)) * normal(random_);
@@ -101,7 +101,7 @@ TEST_CASE("each tile gets the samples that its noise needs") {
             CHECK(std::sqrt(square / count) < 1.1 * relative * NoisyFilm::kGrey);
             const double s = sigma(static_cast<std::size_t>(16 * column)) / (relative * NoisyFilm::kGrey);
             const double needed = std::max(16.0, std::pow(s * s / 0.8, 1 / decay));  // with the margin
-            // Steps are quarters of what is there, or doublings before p is known.
+            // Each step adds a quarter of the present samples, or doubles them before p is known.
             CHECK(samples / count < 2 * needed);
         }
     }
@@ -205,7 +205,7 @@ TEST_CASE("one half of a tile decides upon the other, within all caps") {
     CHECK_FALSE(reached.is_reached);
     CHECK(reached.noise == doctest::Approx(0.5 / 1.5));
     CHECK(reached.samples_required == doctest::Approx(16 * std::pow(0.5 / 1.5 / 0.01, 2) / 0.8));
-    // Half of what all pixels together want.
+    // A budget of half of the samples that all pixels together need.
     CHECK(tiles.next(128 * 4 / 2)[1] == 2);
     CHECK(tiles.next(-1)[1] == 0);  // no time is left
     CHECK(tiles.left() == 128 * 4);
@@ -221,8 +221,8 @@ TEST_CASE("goals that are none are refused") {
     CHECK(goal_of({}) == NoiseGoal{});
 }
 
-// Light that one sample in 2500 meets, in a tile that most often sees nothing of it while it is decided that its eight
-// or sixteen samples are enough.
+// One sample in 2500 hits the light; in most tiles no sample has hit it when eight or sixteen samples are judged to be
+// enough.
 TEST_CASE("stopping does not bias the mean") {
     constexpr int kSide = 16, kPictures = 1500;
     constexpr double kDark = 0.08, kLamp = 100, kChance = 4e-4;

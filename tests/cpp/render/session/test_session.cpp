@@ -1,4 +1,4 @@
-// What all sessions have in common, on a device that only writes down what it is asked for.
+// Behaviour common to all sessions, with a device that only records its requests.
 
 #include <algorithm>
 #include <atomic>
@@ -247,7 +247,7 @@ TEST_CASE("as many frames are under way as the device takes") {
     CHECK_THROWS_AS(view.collected(), InputError);
     CHECK(view.shoot(camera, {.spp = 2, .effects = {}}, ToneCurve::film)->samples() == 2);
     CHECK(view.shoot(camera, {.spp = 3, .effects = {}}, ToneCurve::film)->samples() == 5);
-    // The third has to wait for the first, here until nobody wants to.
+    // The third call has to wait for the first, here until it is cancelled.
     int asked = 0;
     CHECK_THROWS_AS(view.shoot(camera, {.spp = 1, .effects = {}}, ToneCurve::film, [&] { return ++asked < 3; }),
                     Cancelled);
@@ -296,7 +296,7 @@ TEST_CASE("layers catch up with the samples of a picture, and are seen once") {
     session.picture();
     CHECK(session.notes.size() == 2);
 
-    // Half of a layer is none.
+    // A layer that is cancelled half-way does not count.
     std::thread stop;
     session.while_seeing = [&] {
         stop = std::thread([&] { session.cancel(); });
@@ -309,7 +309,7 @@ TEST_CASE("layers catch up with the samples of a picture, and are seen once") {
     CHECK(session.seen.back().first == 0);
     CHECK(session.seen.back().count == 6);
 
-    // Another place is another picture; so is one whose squares were not summed.
+    // Another camera position starts a new picture; so does a picture whose squares were not summed.
     camera.pose.position_m.x += 1;
     session.set(scene, camera, settings);
     session.add(1);
@@ -356,7 +356,7 @@ TEST_CASE("a view that stands still is a new session's picture, whatever lens wa
         CHECK(samples_of_frame() == 2);
     }
     CHECK(count_prepared() == 3);
-    session.set(scene, camera, {.effects = {}});  // what was collected can be looked at
+    session.set(scene, camera, {.effects = {}});  // the accumulated film can still be developed
     CHECK(session.picture().spp == 2);
     CHECK(count_prepared() == 3);
     CHECK(samples_of_frame() == 2);
@@ -436,5 +436,5 @@ TEST_CASE("a picture is developed of what was collected elsewhere") {
     CHECK(image.layers[0].numbers == std::vector<std::uint32_t>{3});
     CHECK(double(image.layers[1].values[0]) == doctest::Approx(28.0 / 3));
     CHECK(image.layers[2].values == std::vector<float>{1.5f});
-    CHECK_THROWS_AS(session.picture(), InputError);  // of its own it has none
+    CHECK_THROWS_AS(session.picture(), InputError);  // the session itself has no samples
 }

@@ -19,8 +19,8 @@ namespace {
 
 constexpr int kSamples = 1 << 18;
 
-// A light's points in barycentric coordinates: 4 x 4 parts of the unit square, of which the triangle has the lower left
-// half. Expected by pdf(distance, cosine), per steradian, from a point in front of the light.
+// Histogram of a light's points in barycentric coordinates: 4 x 4 cells of the unit square, whose lower left half is
+// the triangle. Expected counts follow from pdf(distance, cosine), per steradian, at a point in front of the light.
 struct OnLights {
     std::vector<double> expected, counts;
 
@@ -37,7 +37,7 @@ struct OnLights {
         for (int a = 0; a < 4; ++a)
             for (int b = 0; b < 4; ++b) {
                 const auto in_part = [&](double x, double y) {
-                    // Of a part that the long side cuts, what is below it.
+                    // In a cell that the long side cuts, only the part below it.
                     const double height = a + b == 3 ? 1 - x : 1;
                     return height * per_share((a + x) / 4, (b + height * y) / 4) / 16;
                 };
@@ -155,8 +155,8 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
                 CHECK(std::fabs(length(sample.direction) - 1) < 1e-6f);
                 CHECK(!(sample.reach > 1));
                 if (from.z <= 0) CHECK(sample.irradiance.r == 0);  // on the lights and behind them
-                // What scattered rays that meet the place are weighted by. The cosine's rounding is in it where a light
-                // is not near.
+                // Scattered rays that hit this point are weighted by solid_angle_pdf. It has the rounding of the cosine
+                // if the light is not near.
                 const float cosine = -dot(sample.direction, light.normal);
                 if (sample.pdf < kDelta)
                     CHECK(solid_angle_pdf(light, from, sample.distance, cosine) ==
@@ -211,7 +211,8 @@ TEST_CASE("a lamp's importance is its illuminance, and its bound above that") {
                                static_cast<double>(squared * squared);
         }
         const LightNode& all = view.light_nodes[0];
-        // As if it were a ball, whose silhouette is a quarter of the area, sqrt(3). Its own are from sqrt(2) to 2.
+        // Treats the body as a ball, whose silhouette is a quarter of the area, sqrt(3). The body's own silhouettes are
+        // from sqrt(2) to 2.
         const double of_ball = static_cast<double>(luminance(view.areas[0].radiance)) * std::sqrt(3.0) / 900;
         CHECK(std::fabs(static_cast<double>(light_importance(all, receiver)) - illuminance) < 0.22 * of_ball);
         CHECK(static_cast<double>(max_illuminance(all, receiver)) >= illuminance);
@@ -372,7 +373,7 @@ TEST_CASE("many receivers at once choose the lights that each of them chooses") 
             REQUIRE((chosen.fresh[i] >= 0 && chosen.fresh[i] < 1));
         }
     }
-    // Where the compiler rounds otherwise, a number that lies between two lights may fall to either of them.
+    // If the compiler rounds differently, a random number at the boundary of two lights may select either.
     CHECK(others < 5);
 }
 
@@ -417,7 +418,7 @@ TEST_CASE("kinds of light are chosen with the probabilities of LightKinds, which
             CAPTURE(sky);
             const LightReceiver receiver{{0.2f, 0, 0.1f}, normal};
             const LightKinds kinds = light_kinds(view, SkySampling::apart, receiver);
-            // A dim sky is all the light of what is turned away from the others.
+            // A dim sky is the only light of a surface that faces away from the other lights.
             CHECK((!kinds.environment_is_separate || sky == 1.0f || normal.y < 0));
             check_kinds(tests, view, receiver, kinds, seed++);
             check_kinds(tests, view, receiver, light_kinds(view, SkySampling::chosen, receiver), seed++);

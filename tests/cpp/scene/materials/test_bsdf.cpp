@@ -63,7 +63,7 @@ bool has_narrow_lobe(const Surface& surface) {
     return m.model == MaterialModel::phong ? m.shininess > 100 : m.roughness < 0.4f;
 }
 
-/// Equal areas of the sphere: rings about the normal and sectors; what ends is counted in a bin of its own.
+/// Bins are equal areas of the sphere: rings about the normal and sectors. Samples that end have a bin of their own.
 template <class BsdfT>
 void add_test(ChiSquareTests& tests, const BsdfT& bsdf, bool is_narrow, unsigned seed) {
     constexpr int kRings = 24, kSectors = 24;
@@ -86,7 +86,7 @@ void add_test(ChiSquareTests& tests, const BsdfT& bsdf, bool is_narrow, unsigned
         else
             ++ended;
     }
-    // Directions below the horizon of a lobe have no density; they are the rest.
+    // Directions below the horizon of a lobe have no density; samples that end there have one bin.
     std::vector<double> expected = bins.expected, counts = bins.counts;
     expected.push_back(std::max(0.0, kSamples - total));
     counts.push_back(ended);
@@ -160,7 +160,7 @@ TEST_CASE("light takes the same way in both directions") {
             ++compared;
         }
     }
-    // Some twenty roundings, of which the narrowest lobe (alpha = 0.0225) makes 1 / alpha^2 of that of its half vector.
+    // Some twenty roundings; the narrowest lobe (alpha = 0.0225) multiplies the one of its half vector by 1 / alpha^2.
     hold({"Samplers", "BSDFs: reciprocity", std::to_string(compared) + " pairs of directions", "core", "float32", worst,
           2e-3, "relative"});
 }

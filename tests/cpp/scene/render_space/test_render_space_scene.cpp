@@ -37,8 +37,8 @@ Scene ground(Vec3d middle, double half, Vec3d right, Vec3d up) {
 const Vec3d kRight = normalized(Vec3d{1, -0.3, 0.1}), kUp = normalized(cross(kRight, Vec3d{0.2, 1, 0.3}));
 const Vec3d kNormal = cross(kRight, kUp);
 
-// Where the ground's middle lies about the camera: which is above the middle, an edge and a corner, beside the ground,
-// in its plane, and almost in it.
+// Positions of the ground's centre relative to the camera, which is above the centre, an edge and a corner, beside the
+// ground, in its plane, and almost in its plane.
 std::vector<Vec3d> middles(double half) {
     return {
         -1.5 * kNormal + Vec3d{0.2, 0.1, 0},  -1.5 * kNormal + half * kRight, -20.0 * kNormal + half * (kRight + kUp),
@@ -51,7 +51,7 @@ double distance_to_segment(Vec3d p, Vec3d a, Vec3d b) {
     return length(p - a - t * d);
 }
 
-// Of the origin, to a triangle.
+// Distance from the origin to a triangle.
 double distance_to(Vec3d a, Vec3d b, Vec3d c) {
     const Vec3d n = normalized(cross(b - a, c - a)), foot = dot(a, n) * n;
     const auto left = [&](Vec3d p, Vec3d q) { return dot(cross(q - p, foot - p), n) >= 0; };
@@ -173,7 +173,7 @@ TEST_CASE("slivers have the normal of their double corners, and points on them l
         normal_error = std::max(normal_error, length(static_cast<Vec3d>(view.planes[0].normal) - n));
         const Vec3d p = a + 0.5 * u + 0.3 * thin * side, to = normalized(p);
         if (std::fabs(dot(to, n)) < 0.1) continue;
-        // What traversal says of it, with barycentric coordinates as uncertain as float edges make them.
+        // The hit as traversal reports it, with barycentric coordinates as uncertain as float edges make them.
         const double u_share = (0.5 + random.between(-1, 1) * std::min(6e-8 * 6 / thin, 0.3));
         const Hit hit{static_cast<float>(length(p)), 0, static_cast<float>(u_share), 0.0f};
         const SurfacePoint point = surface_point<SceneKind::any>(view, hit, {0, 0, 0}, static_cast<Vec3f>(to), 0);
@@ -188,7 +188,7 @@ TEST_CASE("slivers have the normal of their double corners, and points on them l
     hold({"Scenes", "normal of slivers", tried, "core", "float32", normal_error, 5e-7, "radians"});
     breaks({"Scenes", "normal of slivers, from float corners", tried, "core", "float32", float_normal_error, 5e-7,
             "radians"});
-    // The ray's direction, its length, their product and the way to the plane, seen under 6 degrees at least.
+    // Roundings of the ray's direction, its length, their product and the distance to the plane, at 6 degrees or more.
     hold({"Scenes", "point on a sliver", tried, "core", "float32", place_error, 8 * 0x1p-24, "of the distance"});
 }
 
@@ -200,7 +200,7 @@ TEST_CASE("a ray from afar meets a small triangle where its corners say") {
     const Hit hit{1e7f, 0, 0.3f, 0.2f};
     const Vec3f way = static_cast<Vec3f>(normalized(expected - from));
     const SurfacePoint point = surface_point<SceneKind::any>(placed.view(), hit, static_cast<Vec3f>(from), way, 0);
-    // Float steps are 1 m along such a ray.
+    // The spacing of floats along this ray is 1 m.
     CHECK(length(static_cast<Vec3d>(point.position) - expected) < 8 * 0x1p-24);
 }
 

@@ -26,7 +26,7 @@ struct Row {
     }
 };
 
-/// Of the texel with a number of any size.
+/// Column, from 0 to 3, of the texel with this index, which may lie outside the texture.
 int texel_of(int number, TextureWrap wrap) {
     const int repeated = ((number % 4) + 4) % 4;
     if (wrap == TextureWrap::repeat) return repeated;

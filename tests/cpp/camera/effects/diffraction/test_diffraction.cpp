@@ -1,4 +1,4 @@
-// Diffraction's tables: the light of apertures against closed forms, and what is drawn from them.
+// Diffraction tables: the light of apertures against closed forms, and samples drawn from the tables.
 
 #include <cmath>
 #include <complex>
@@ -20,8 +20,8 @@ using namespace realcam::test;
 
 constexpr double kPi = std::numbers::pi;
 
-/// A regular polygon or, with no corners, a circle, of radius 0.1, as the search for edges finds it: along scan lines,
-/// few of which meet a corner.
+/// A regular polygon or, with 0 corners, a circle, of radius 0.1, as the search for edges finds it: along scan lines,
+/// which rarely hit a corner.
 std::vector<Vec2<double>> outline(int corners, double radius = 0.1) {
     std::vector<Vec2<double>> points;
     for (int scan_line = 0; scan_line < kPupilEdgeCorners; ++scan_line) {
@@ -43,7 +43,7 @@ double airy_share(double f) {
     return 1 - std::pow(std::cyl_bessel_j(0, kPi * f), 2) - std::pow(std::cyl_bessel_j(1, kPi * f), 2);
 }
 
-/// Of the cells up to this ring.
+/// Share of the light in the cells within the first `rings` rings.
 double share_within(const ApertureDiffraction& of, int rings) {
     double sum = 0;
     for (int cell = 0; cell < rings * kDiffractionAzimuths; ++cell) sum += of.cells[static_cast<std::size_t>(cell)];
@@ -86,7 +86,7 @@ TEST_CASE("a circle's light within each ring is Airy's") {
         const auto light = [&](int k) { return share_within(found, k + 1) - share_within(found, k); };
         if (rings < 40 && light(rings) < light(darkest)) darkest = rings;
     }
-    // The light beyond the cells is that of stationary phase, which leaves out what its rings vary by: at the sixth
+    // Light beyond the cells follows from stationary phase, which omits the oscillation of the rings: at the sixth
     // period, 2 / (pi^2 6) times 1 / (12 pi).
     hold({"Effects", "light of a circle within a ring, against Airy's", "60 rings", "core", "float64", worst, 1e-3,
           "of all"});
@@ -94,8 +94,8 @@ TEST_CASE("a circle's light within each ring is Airy's") {
 }
 
 TEST_CASE("cells and edges together have all light") {
-    // Parseval's theorem, but for what the light varies by beyond the cells, which stationary phase leaves out: more
-    // where two edges that are near each other interfere.
+    // Parseval's theorem, except for the oscillation of the light beyond the cells, which stationary phase omits; it is
+    // larger where two edges near each other interfere.
     double simple = std::fabs(diffraction_of({outline(0)}).found_share - 1), obstructed = 0;
     for (int corners = 5; corners <= 9; ++corners)
         simple = std::max(simple, std::fabs(diffraction_of({outline(corners)}).found_share - 1));
@@ -157,7 +157,7 @@ TEST_CASE("blades make as many spikes as they have normals") {
 TEST_CASE("an obstructed aperture's first dark ring is narrower") {
     for (const double inner : {0.3, 0.5}) {
         const ApertureDiffraction found = diffraction_of(ring(inner));
-        // Where the amplitudes of the circle and of what blocks it cancel.
+        // At the dark ring the amplitudes of the circle and of its obstruction cancel.
         double low = 0.8, high = 1.2;
         for (int i = 0; i < 50; ++i) {
             const double middle = 0.5 * (low + high);
@@ -191,7 +191,8 @@ TEST_CASE("edge draws have the light that all draws have beyond the cells") {
         weighted += static_cast<double>(edge.weight);
         beyond_weighted += periods(edge.mm_per_nm) > 20 ? static_cast<double>(edge.weight) : 0.0;
     }
-    // Draws: sqrt(0.034 / 2^18) and sqrt(0.01 / 2^18); the film ends at 2 mm, 460 periods, and has the rest.
+    // Noise of the two kinds of draws: sqrt(0.034 / 2^18) and sqrt(0.01 / 2^18). The remainder of the limit is for the
+    // end of the film at 2 mm, 460 periods.
     hold({"Effects", "light beyond the cells, by two ways of drawing", "262144 draws of each", "core", "float32",
           std::max(std::fabs(all - weighted), std::fabs(beyond_all - beyond_weighted)) / kCount, 0.0012, "of all"});
 }
@@ -216,12 +217,14 @@ TEST_CASE("draws from straight edges thin out to the margins of a film") {
             edge_kicks += weight;
             largest_far = std::max(largest_far, weight);
         }
-        // What sinc^2 has beyond: sin^2 counts as a half. 3% is the fit's, and five times the noise of a count.
+        // Integral of sinc^2 beyond `far`, with sin^2 replaced by its mean of 1/2. The tolerance is 3% for the fit, and
+        // five times the noise of the count.
         const double wanted = kCount / (kPi * kPi * far), tolerance = 0.03 * wanted + 5 * std::sqrt(wanted);
         CAPTURE(far);
         CHECK(std::fabs(kicks - wanted) < tolerance);
         CHECK(std::fabs(edge_kicks - wanted) < tolerance);
-        // Nowhere a speck: where a share of 1 / (pi^2 far) of the light goes, a draw brings at most that share's root.
+        // No bright specks: where 1 / (pi^2 far) of the light goes, a draw carries at most the square root of that
+        // share.
         CHECK(largest_far < 1.2 * largest / std::sqrt(kPi * kPi * far));
     }
 }

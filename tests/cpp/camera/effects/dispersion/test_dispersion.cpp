@@ -76,10 +76,10 @@ TEST_CASE("cubics give the indices of all lenses") {
         const IndexErrors errors = index_errors(io::read_lens(name), spectrum);
         worst = {std::max(worst.rms, errors.rms), std::max(worst.worst, errors.worst)};
     }
-    // An achromat's lateral colour is a twentieth of what its glasses spread each, and so right to 2%.
+    // An achromat's lateral colour is a twentieth of the dispersion of each of its glasses, and so correct to 2%.
     hold({"Effects", "dispersion from a cubic over the wavelength, rms",
           "all lenses, wavelengths as in a picture under D65", "core", "float32", worst.rms, 1e-3, ""});
-    // At the ends of the spectrum there is next to no light.
+    // The largest error is at the ends of the spectrum, where there is hardly any light.
     hold({"Effects", "index of refraction from a cubic over the wavelength", "the same", "core", "float32", worst.worst,
           1.5e-3, ""});
 }
@@ -106,7 +106,7 @@ TEST_CASE("the film's matrix over all wavelengths is the identity for D65, and s
             for (int k = 0; k < 9; ++k) mean[k] += static_cast<double>(cell.film[k]) / FilmSpectrum::kCells;
         }
         for (int row = 0; row < 3; ++row) {
-            // Of 256 floats of up to 3, whose roundings add up to some 1e-7.
+            // The mean of 256 floats of up to 3, whose rounding errors add up to some 1e-7.
             CHECK(std::fabs(mean[3 * row] + mean[3 * row + 1] + mean[3 * row + 2] - 1) < 1e-6);
             if (std::string(name) == "D65")
                 for (int column = 0; column < 3; ++column)
