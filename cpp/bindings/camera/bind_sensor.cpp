@@ -166,17 +166,17 @@ py::array_t<double> matrix_array(const SensorMatrix& m) {
 }
 
 Sensor changed_sensor(Sensor sensor, const std::optional<std::string>& name, std::optional<double> pixel_pitch_um,
-                    const std::optional<std::pair<int, int>>& resolution,
-                    const std::optional<std::string>& color_filter_array, const std::optional<Rows>& quantum_efficiency,
-                    const std::optional<Rows>& cover_glass, const std::optional<Rows>& angular_response,
-                    std::optional<double> gain_dn_per_e, std::optional<double> largest_gain_db,
-                    std::optional<double> saturation_capacity_e, std::optional<int> adc_bits,
-                    std::optional<double> black_level_dn, std::optional<double> converter_noise_dn,
-                    std::optional<double> read_noise_e, std::optional<double> row_noise_e,
-                    std::optional<double> dark_current_e_per_s, std::optional<double> dark_current_temperature_c,
-                    std::optional<double> dark_current_doubling_k, std::optional<double> dsnu_e,
-                    std::optional<double> prnu_percent, std::optional<double> hot_pixel_share,
-                    std::optional<double> hot_pixel_current_e_per_s) {
+                      const std::optional<std::pair<int, int>>& resolution,
+                      const std::optional<std::string>& color_filter_array,
+                      const std::optional<Rows>& quantum_efficiency, const std::optional<Rows>& cover_glass,
+                      const std::optional<Rows>& angular_response, std::optional<double> gain_dn_per_e,
+                      std::optional<double> largest_gain_db, std::optional<double> saturation_capacity_e,
+                      std::optional<int> adc_bits, std::optional<double> black_level_dn,
+                      std::optional<double> converter_noise_dn, std::optional<double> read_noise_e,
+                      std::optional<double> row_noise_e, std::optional<double> dark_current_e_per_s,
+                      std::optional<double> dark_current_temperature_c, std::optional<double> dark_current_doubling_k,
+                      std::optional<double> dsnu_e, std::optional<double> prnu_percent,
+                      std::optional<double> hot_pixel_share, std::optional<double> hot_pixel_current_e_per_s) {
     std::string changed_names;
     const auto list_if = [&](bool has_changed, const char* key) {
         if (has_changed) changed_names += std::string(changed_names.empty() ? "" : ", ") + key;

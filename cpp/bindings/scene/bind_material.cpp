@@ -119,12 +119,12 @@ void def_property(py::class_<PythonMaterial>& material, const Field<Member>& fie
 
 /// See Material.replace.
 PythonMaterial changed_material(PythonMaterial m, const std::optional<Colour>& diffuse,
-                            const std::optional<Colour>& specular, std::optional<float> shininess,
-                            const std::optional<Colour>& emission,
-                            const Typed<"ArrayLike | types.EllipsisType | None">& texture,
-                            const std::optional<std::string>& name, std::optional<float> metallic,
-                            std::optional<float> roughness, std::optional<float> transmission, std::optional<float> ior,
-                            std::optional<float> opacity) {
+                                const std::optional<Colour>& specular, std::optional<float> shininess,
+                                const std::optional<Colour>& emission,
+                                const Typed<"ArrayLike | types.EllipsisType | None">& texture,
+                                const std::optional<std::string>& name, std::optional<float> metallic,
+                                std::optional<float> roughness, std::optional<float> transmission,
+                                std::optional<float> ior, std::optional<float> opacity) {
     if (diffuse) m.values.diffuse = rgb(*diffuse);
     if (specular) m.values.specular = rgb(*specular);
     if (emission) m.values.emission = rgb(*emission);

@@ -105,7 +105,7 @@ double irradiance_over_last_surface(const LensSystem& lens, double film_x, doubl
                 const Vec3d normal = normalized(Vec3d{-radial * x, -radial * y, 1});
                 const Vec3d to_surface = points[i] - film, d = normalized(to_surface);
                 const double at_surface = -dot(d, normal);  // cos(theta'')
-                if (at_surface <= 0) continue;              // seen from behind
+                if (at_surface <= 0) continue;  // seen from behind
                 const double area = dx * dy / normal.z;
                 factor[i] = -d.z * at_surface / dot(to_surface, to_surface) * area;
                 rays.direction.set(i, d);
