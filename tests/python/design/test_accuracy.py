@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import realcam as rc
 from realcam.accuracy import AccuracyCost, Measured
-from realcam.accuracy.error_plot import _apart
+from realcam.accuracy.error_plot import _spread
 from realcam.accuracy.image_space_blur import diffused, gathered
 
 from .. import scenes
@@ -133,7 +133,7 @@ def test_the_figure_is_one_file(cost: AccuracyCost, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("places", [[0.1, 0.11, 0.12, 0.9], [0.5] * 6, [0.9, 0.99, 1.0], [0.2, 0.8]])
 def test_names_of_lines_keep_apart(places: list[float]) -> None:
-    moved = _apart(np.array(places), 0.05)
+    moved = _spread(np.array(places), 0.05)
     assert np.diff(moved).min() >= 0.05 - 1e-12
     assert moved[-1] <= 1
     # Alone, a name stays where its line ends.

@@ -31,9 +31,9 @@ def test_what_is_being_typed_stays_while_the_lens_changes(bench: BenchPage) -> N
 
 HOLD_LENSES = """
 () => {
-    const stream = [...realcamStreams.values()][0], tell = stream.tell.bind(stream), held = [];
-    stream.tell = (type, message) => (type === "lens" ? held.push(message) : tell(type, message));
-    window.releaseLenses = () => { delete stream.tell; held.forEach((view) => tell("lens", view)); };
+    const stream = [...realcamStreams.values()][0], notify = stream.notify.bind(stream), held = [];
+    stream.notify = (type, message) => (type === "lens" ? held.push(message) : notify(type, message));
+    window.releaseLenses = () => { delete stream.notify; held.forEach((view) => notify("lens", view)); };
 }
 """
 
