@@ -184,7 +184,7 @@ Environment read_environment(const std::string& path, const std::string& layer, 
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& error) {
-        throw ImageFileError(path + ": " + error.what() + "; expected a latitude-longitude picture");
+        throw ImageFileError(path + ": " + error.what() + "; an environment must be a latitude-longitude picture");
     }
     clamp_negative_radiance(environment, path, warn);
     return environment;

@@ -107,7 +107,7 @@ expect(2 "full, full_double, polynomial, thick, mapped, thin or pinhole" render 
 expect(2 "film or linear" render quad.obj -o x.png --tone flat)
 expect(2 "auto, cpu" render quad.obj -o x.png --device abacus)
 expect(2 "--environment must be a picture.*there is no file \"gone\\.hdr\"" render quad.obj -o x.png --environment gone.hdr)
-expect(2 "empty\\.obj: is no picture" render quad.obj -o x.png --environment empty.obj)
+expect(2 "empty\\.obj: is not a picture" render quad.obj -o x.png --environment empty.obj)
 expect(2 "no exposure can be metered" render quad.obj -o x.png ${small} --position 0,0,9 --look-at 0,0,99 --environment 0)
 
 # A signal other than Ctrl-C's leaves nothing behind.
