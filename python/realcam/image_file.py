@@ -37,7 +37,9 @@ def read_picture(path: str | os.PathLike[str]) -> np.ndarray:
     try:
         return read_environment(path)
     except _core.ImageFileError as error:
-        raise _core.ImageFileError(str(error).removesuffix("; expected a latitude-longitude picture")) from None
+        raise _core.ImageFileError(
+            str(error).removesuffix("; an environment must be a latitude-longitude picture")
+        ) from None
 
 
 def write_codes(codes: np.ndarray, path: str | os.PathLike[str], entries: Mapping[str, str]) -> None:
