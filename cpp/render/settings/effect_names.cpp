@@ -1,11 +1,13 @@
 #include "effect_names.hpp"
-#include "../../optics/coating/coated_surface.hpp"
-#include "../../optics/trace/lens_dispersion.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <iterator>
 #include <optional>
+
+#include "../../camera/effects/dispersion/illuminant.hpp"
+#include "../../optics/coating/coated_surface.hpp"
+#include "../../optics/trace/lens_dispersion.hpp"
 
 namespace realcam {
 
@@ -23,13 +25,6 @@ std::optional<double> fraction_from(const std::string& text) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= 1)) return std::nullopt;
     return value;
-}
-
-/// Returns the shortest text that is read back as the same number.
-std::string shortest_text(double value) {
-    char text[32];
-    const auto result = std::to_chars(text, text + sizeof text, value);
-    return {text, result.ptr};
 }
 
 }  // namespace
