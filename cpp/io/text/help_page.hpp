@@ -18,7 +18,7 @@ struct HelpPage {
         std::vector<std::pair<std::string, std::string>> rows;  ///< an option or a command, and its description
     };
 
-    std::string usage;  ///< such as "realcam lens info [OPTIONS] LENS"
+    std::string usage;  ///< usage line: "realcam lens info [OPTIONS] LENS"
     std::string description;  ///< paragraphs with an empty line between them
     std::vector<Section> sections;
     std::vector<std::string> examples;  ///< command lines

@@ -1,7 +1,6 @@
 #include "effect_names.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 #include <optional>
 
@@ -21,10 +20,8 @@ std::string base_name_of(const std::string& name) {
 
 /// Parses a number from 0 to 1. Returns std::nullopt for other texts.
 std::optional<double> fraction_from(const std::string& text) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= 1)) return std::nullopt;
-    return value;
+    const double value = number_in(text);
+    return value >= 0 && value <= 1 ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-"""Radial functions r(s) = s top(s) / bottom(s), of which all polynomial and rational camera models are made.
+"""Radial functions r(s) = s top(s) / bottom(s): the common form of all polynomial and rational camera models.
 
 s is the tangent of the angle to the axis, or the angle, or another distance from the axis. Sources: OpenCV's
 documentation of calib3d ("Camera Calibration and 3D Reconstruction") and of its fisheye namespace; J. Kannala and
@@ -116,9 +116,9 @@ def monotone_inverse(
             low, high = np.where(error <= 0, s, low), np.where(error > 0, s, high)
             step = s - error / slope(s)
             following = np.where((step >= low) & (step <= high), step, 0.5 * (low + high))
-            is_settled = np.abs(following - s) <= 1e-15 * np.abs(s)
+            has_converged = np.abs(following - s) <= 1e-15 * np.abs(s)
             s = following
-            if (is_settled | ~np.isfinite(values)).all():
+            if (has_converged | ~np.isfinite(values)).all():
                 break
         is_reached = np.abs(function(s) - values) <= 1e-12 * (1 + np.abs(values))
         return np.where(is_reached & (values >= 0), s, np.nan)

@@ -12,7 +12,7 @@ from .model import CameraModel
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StatedCamera:
-    """What the readers of all formats return.
+    """Camera as stated in a file: the result of the readers of all formats.
 
     camera_model: the equations, in realcam's pixels. size: (width, height) in pixels. model: name of the model in its
     file format. name: of the camera in its file. format: of the file; empty for a camera that was not loaded.

@@ -63,7 +63,7 @@ def test_a_narrow_band_takes_the_axial_colour_away() -> None:
         return float(np.sqrt((light * (x * x + y * y)).sum() / light.sum()))
 
     green = [(586.0, 0.0), (587.0, 1.0), (589.0, 1.0), (590.0, 0.0)]
-    # What the filter leaves is the blur of a line at its middle: that of the lamp's size and of spherical aberration.
+    # The remaining blur is that of a spectral line at the band's centre: the lamp's size and spherical aberration.
     narrow = width(lens_filter=green)
     assert narrow == pytest.approx(width(illuminant=588.0), rel=0.03)
     assert narrow < 0.8 * width()

@@ -152,7 +152,7 @@ def test_ideal_cameras_are_the_matrix(model: str) -> None:
 @pytest.mark.parametrize("tilt_deg", [0.0, 0.3])
 def test_what_is_not_imaged_says_why(tilt_deg: float) -> None:
     camera = camera_of("double-gauss-50mm")
-    if tilt_deg:  # then lines of sight have another table
+    if tilt_deg:  # a tilted lens has another table of projection rays
         lens = camera.lens.with_element_tilted(2, 3, x_deg=tilt_deg)
         camera = camera.replace(lens=lens, film=rc.Film(22, 16, (880, 640)))
     points = [(0, 0, -2), (0, 0, 3), (9, 0, -10), (0, 5, -0.5), (np.nan, 0, -1), (0, np.inf, -1), (0, 0, -0.03)]

@@ -150,7 +150,7 @@ def test_a_point_out_of_focus_is_the_pupils_ellipse() -> None:
     assert math.sqrt(4 * (x2 - blur)) == pytest.approx(4.0 * abs(1 - d / 100), rel=0.01)
 
 
-def test_lens_info_says_forms_places_and_both_focal_lengths(command: Command) -> None:
+def test_lens_info_lists_forms_placements_and_both_focal_lengths(command: Command) -> None:
     def told(name: str) -> str:
         return command("lens", "info", name).stdout
 

@@ -290,7 +290,7 @@ def test_bounds_and_focus_know_of_objects() -> None:
         (np.zeros((0, 4, 4)), "holds no matrix"),
     ],
 )
-def test_what_is_no_place_is_refused(place: object, says: str) -> None:
+def test_invalid_transforms_are_refused(place: object, says: str) -> None:
     with pytest.raises(rc.InputError, match=says):
         GROUND.with_instance(as_scene(ball()), place, name="egg")
 

@@ -471,7 +471,7 @@ def test_pictures_of_all_kinds(bench: LensBench, tmp_path: Path) -> None:
             saving.picture_content(image, name, "film")
 
 
-def test_the_shot_file_s_ways_of_taking_pictures_are_kept(bench_of: BenchOf, tmp_path: Path) -> None:
+def test_the_render_settings_of_the_shot_file_are_kept(bench_of: BenchOf, tmp_path: Path) -> None:
     """They are shown, stated in the picture's metadata, and saved."""
     more = 'transport = "whitted"\nclamp_cd_m2 = 40.0\nilluminant = "A"\nmax_bounces = 2\n'
     path = bench_shots.write_panels_shot(tmp_path, more=more)

@@ -1,4 +1,4 @@
-"""What a reader of a file format provides."""
+"""Interface of the readers of file formats."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..stated_camera import StatedCamera
 
 
 class Options(NamedTuple):
-    """What the caller states in addition to the file. size: (width, height). crop_factor: of the camera."""
+    """Values that the caller adds to those of the file. size: (width, height), pixels. crop_factor: of the camera."""
 
     size: tuple[int, int] | None = None
     crop_factor: float | None = None
