@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._core import InputError
-from . import opencv_models, rectification, resampling
+from . import rectification, resampling
 from .arrays import Array, Integers, picture_size, rows_of
 from .load import load
-from .model import shift
+from .models import opencv_models
+from .models.central import shift
 from .stated_camera import StatedCamera
 from .status import PointStatus
 

@@ -6,8 +6,8 @@ import os
 
 from .._core import InputError
 from .arrays import picture_size
-from .document import Document
 from .errors import CalibrationFileError
+from .files.document import Document
 from .formats import FORMATS
 from .formats.format import Format, Options
 from .stated_camera import StatedCamera

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .arrays import Array, picture_size
-from .model import CameraModel
+from .models.central import CameraModel
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import InputError
-from ..calibration.radial import RationalRadius
+from ..calibration.models.radial import RationalRadius
 
 Array = NDArray[np.float64]
 

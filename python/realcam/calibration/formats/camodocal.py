@@ -10,10 +10,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..document import Document
-from ..entries import Entries
-from ..model import CentralModel, camera_matrix
-from ..opencv_models import fisheye_model, omnidirectional_model, pinhole_model
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import CentralModel, camera_matrix
+from ..models.opencv_models import fisheye_model, omnidirectional_model, pinhole_model
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole
 

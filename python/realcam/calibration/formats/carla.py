@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..entries import Entries
-from ..model import camera_matrix
-from ..opencv_models import pinhole_model
+from ..files.entries import Entries
+from ..models.central import camera_matrix
+from ..models.opencv_models import pinhole_model
 from ..stated_camera import StatedCamera
 from .format import Format, sole
 

@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..distortion import BrownConrady
-from ..document import Document
-from ..entries import Entries
-from ..model import CentralModel, camera_matrix
-from ..opencv_models import distortion_of, fisheye_distortion
-from ..projections import Equidistant, ExtendedUnified, FieldOfViewAngle, Perspective, Projection
-from ..radial import RationalRadius, even_powers
-from ..ray_polynomials import RayPolynomial
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import CentralModel, camera_matrix
+from ..models.distortion import BrownConrady
+from ..models.opencv_models import distortion_of, fisheye_distortion
+from ..models.projections import Equidistant, ExtendedUnified, FieldOfViewAngle, Perspective, Projection
+from ..models.radial import RationalRadius, even_powers
+from ..models.ray_polynomials import RayPolynomial
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options
 

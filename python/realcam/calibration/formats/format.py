@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import NamedTuple, NoReturn
 
-from ..document import Document
+from ..files.document import Document
 from ..stated_camera import StatedCamera
 
 

@@ -11,13 +11,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..arrays import Array
-from ..distortion import BrownConrady
-from ..document import Document
-from ..entries import Entries
-from ..model import CentralModel
-from ..projections import Equidistant
-from ..radial import RationalRadius
-from ..ray_polynomials import AnglePolynomial
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import CentralModel
+from ..models.distortion import BrownConrady
+from ..models.projections import Equidistant
+from ..models.radial import RationalRadius
+from ..models.ray_polynomials import AnglePolynomial
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole, unknown_model
 

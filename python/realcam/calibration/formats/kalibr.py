@@ -10,12 +10,12 @@ from collections.abc import Callable
 import numpy as np
 
 from ..arrays import Array
-from ..distortion import BrownConrady
-from ..document import Document
-from ..entries import Entries
-from ..model import CentralModel, camera_matrix
-from ..opencv_models import distortion_of, fisheye_distortion
-from ..projections import (
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import CentralModel, camera_matrix
+from ..models.distortion import BrownConrady
+from ..models.opencv_models import distortion_of, fisheye_distortion
+from ..models.projections import (
     DoubleSphere,
     Equidistant,
     ExtendedUnified,

@@ -10,10 +10,10 @@ import re
 import numpy as np
 
 from ..arrays import Array
-from ..document import Document
-from ..entries import Entries
-from ..model import shift
-from ..opencv_models import pinhole_model
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import shift
+from ..models.opencv_models import pinhole_model
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, stated_size
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator
 
-from ..document import Document
-from ..entries import Entries
-from ..model import camera_matrix
-from ..opencv_models import fisheye_model, pinhole_model
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import camera_matrix
+from ..models.opencv_models import fisheye_model, pinhole_model
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, unknown_model
 

@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..distortion import BrownConrady
-from ..document import Document
-from ..entries import Entries, element_entries
-from ..model import CentralModel, camera_matrix
-from ..projections import Perspective
-from ..radial import RationalRadius
+from ..files.document import Document
+from ..files.entries import Entries, element_entries
+from ..models.central import CentralModel, camera_matrix
+from ..models.distortion import BrownConrady
+from ..models.projections import Perspective
+from ..models.radial import RationalRadius
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, stated_size
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
-from ..distortion import BrownConrady
-from ..document import Document
-from ..entries import Entries
-from ..model import CentralModel, camera_matrix, shift
-from ..opencv_models import pinhole_model
-from ..ray_polynomials import RayPolynomial
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import CentralModel, camera_matrix, shift
+from ..models.distortion import BrownConrady
+from ..models.opencv_models import pinhole_model
+from ..models.ray_polynomials import RayPolynomial
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole, stated_size
 

@@ -10,12 +10,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..distortion import BrownConrady
-from ..document import Document
-from ..entries import Entries, element_entries
-from ..model import CentralModel
-from ..projections import Equidistant, Perspective, Projection
-from ..radial import RationalRadius, even_powers
+from ..files.document import Document
+from ..files.entries import Entries, element_entries
+from ..models.central import CentralModel
+from ..models.distortion import BrownConrady
+from ..models.projections import Equidistant, Perspective, Projection
+from ..models.radial import RationalRadius, even_powers
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole, unknown_model
 

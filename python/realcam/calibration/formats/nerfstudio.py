@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..distortion import BrownConrady
-from ..document import Document
-from ..entries import Entries
-from ..model import CentralModel, camera_matrix
-from ..opencv_models import fisheye_model
-from ..projections import Perspective
-from ..radial import RationalRadius, even_powers
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import CentralModel, camera_matrix
+from ..models.distortion import BrownConrady
+from ..models.opencv_models import fisheye_model
+from ..models.projections import Perspective
+from ..models.radial import RationalRadius, even_powers
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole, unknown_model
 

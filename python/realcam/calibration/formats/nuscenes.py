@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from ..document import Document
-from ..entries import Entries
 from ..errors import CalibrationFileError
-from ..model import shift
-from ..opencv_models import pinhole_model
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import shift
+from ..models.opencv_models import pinhole_model
 from ..stated_camera import StatedCamera
 from ..transforms import inverse_of, rigid
 from .format import Cameras, Format, Options, stated_size

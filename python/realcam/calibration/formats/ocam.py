@@ -12,11 +12,11 @@ import re
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from ..distortion import BrownConrady
-from ..document import Document
-from ..entries import Entries
-from ..model import CentralModel
-from ..ocam_projection import InversePolynomial
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import CentralModel
+from ..models.distortion import BrownConrady
+from ..models.ocam_projection import InversePolynomial
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from typing import Any
 
-from ..document import Document
-from ..entries import Entries
-from ..model import shift
-from ..opencv_models import LENGTHS, fisheye_model, pinhole_model
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import shift
+from ..models.opencv_models import LENGTHS, fisheye_model, pinhole_model
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole, stated_size
 

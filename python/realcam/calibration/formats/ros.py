@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from ..arrays import Array
-from ..document import Document
-from ..entries import Entries
-from ..model import CentralModel, shift
-from ..opencv_models import fisheye_model, pinhole_model
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import CentralModel, shift
+from ..models.opencv_models import fisheye_model, pinhole_model
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, sole
 

@@ -7,8 +7,8 @@ from pathlib import PurePosixPath
 import numpy as np
 
 from ..arrays import Array
-from ..document import Document
-from ..texture_model import TextureModel
+from ..files.document import Document
+from ..models.texture_model import TextureModel
 
 LARGEST = 8192  # texels along a side
 

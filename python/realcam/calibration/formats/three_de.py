@@ -12,12 +12,12 @@ from collections.abc import Callable
 import numpy as np
 
 from ..arrays import Array
-from ..document import Document
-from ..entries import Entries
-from ..model import CentralModel
-from ..projections import Perspective
+from ..files.document import Document
+from ..files.entries import Entries
+from ..models.central import CentralModel
+from ..models.projections import Perspective
+from ..models.undistortion import Undistortion
 from ..stated_camera import StatedCamera
-from ..undistortion import Undistortion
 from .format import Cameras, Format, Options, stated_size
 
 NODE = re.compile(r"^\s*LD_(3DE4?_\w+) \{\s*\n(.*?)^\}", re.MULTILINE | re.DOTALL)

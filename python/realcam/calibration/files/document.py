@@ -10,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NoReturn
 
-from .errors import CalibrationFileError
+from ..errors import CalibrationFileError
 from .markup import parsed_xml, parsed_yaml
 
 LARGEST_FILE = 64 << 20  # bytes; nerfstudio's files of tens of thousands of frames stay below it

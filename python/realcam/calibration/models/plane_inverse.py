@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .arrays import Array
+from ..arrays import Array
 
 Map = Callable[[Array], Array]
 STEPS = 32  # of the continuation from the centre, for points at which Newton's method alone does not converge

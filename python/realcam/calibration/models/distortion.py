@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from .arrays import Array, Booleans
+from ..arrays import Array, Booleans
 from .folds import Folds
 from .plane_inverse import plane_inverse
 from .radial import RationalRadius, monotone_inverse

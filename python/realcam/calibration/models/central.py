@@ -8,10 +8,10 @@ from typing import Protocol
 
 import numpy as np
 
-from .arrays import Array, Integers
+from ..arrays import Array, Integers
+from ..status import PointStatus
 from .distortion import BrownConrady, Distortion
 from .projections import Projection
-from .status import PointStatus
 
 
 class CameraModel(Protocol):

@@ -11,9 +11,9 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from .arrays import Array, Integers
+from ..arrays import Array, Integers
+from ..status import PointStatus
 from .radial import RationalRadius, monotone_inverse
-from .status import PointStatus
 
 
 def _first_positive_root(polynomial: Polynomial) -> float:

@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from .arrays import Array, Integers
+from ..arrays import Array, Integers
+from ..status import PointStatus
 from .projections import refused
 from .radial import monotone_inverse
-from .status import PointStatus
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.polynomial.polynomial import polyval
 
-from .arrays import Array
+from ..arrays import Array
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from .arrays import Array, Booleans, Integers
-from .status import PointStatus
+from ..arrays import Array, Booleans, Integers
+from ..status import PointStatus
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any, NoReturn
 from xml.parsers import expat
 
-from .._core import InputError
+from ..._core import InputError
 
 Fail = Callable[[str], NoReturn]
 

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .arrays import Array, Booleans
+from ..arrays import Array, Booleans
 from .radial import spread
 
 AZIMUTHS = 256

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .arrays import Array, Booleans
+from ..arrays import Array, Booleans
 from .folds import Folds
 from .plane_inverse import plane_inverse
 

@@ -11,8 +11,8 @@ from typing import Protocol
 
 import numpy as np
 
-from .arrays import Array, Integers
-from .status import PointStatus
+from ..arrays import Array, Integers
+from ..status import PointStatus
 
 
 class Projection(Protocol):

@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from .arrays import Array, picture_size
+from ..arrays import Array, picture_size
 from .document import Document
 
 _MISSING = object()

@@ -10,10 +10,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .._core import InputError
-from .arrays import Array
+from ..._core import InputError
+from ..arrays import Array
+from .central import CentralModel
 from .distortion import BrownConrady
-from .model import CentralModel
 from .projections import Equidistant, Perspective, UnifiedSphere
 from .radial import RationalRadius, even_powers
 

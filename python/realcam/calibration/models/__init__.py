@@ -1,0 +1,1 @@
+"""Camera models: projections of directions to a plane, distortions of the plane, and pixels."""
