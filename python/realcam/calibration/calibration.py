@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike
 from .._core import InputError
 from . import rectification, resampling
 from .arrays import Array, Integers, picture_size, rows_of
-from .load import load
+from .load import load, load_all
 from .models import opencv_models
 from .models.central import shift
+from .save import save
 from .stated_camera import StatedCamera
 from .status import PointStatus
 
@@ -45,8 +46,39 @@ class Calibration(StatedCamera):
         then from the suffix. size: (width, height) in pixels, for formats that do not state it. crop_factor: of the
         camera, for lensfun. Raises CalibrationFileError, InputError.
         """
-        stated = load(path, camera, format, size=size, crop_factor=crop_factor)
-        return Calibration(**{entry.name: getattr(stated, entry.name) for entry in fields(stated)})
+        return _calibration(load(path, camera, format, size=size, crop_factor=crop_factor))
+
+    @staticmethod
+    def load_all(
+        path: str | os.PathLike[str],
+        format: str | None = None,
+        *,
+        size: tuple[int, int] | None = None,
+        crop_factor: float | None = None,
+    ) -> dict[str, Calibration]:
+        """Loads all cameras of a file, by their names and in its order; arguments and errors as for load."""
+        stated = load_all(path, format, size=size, crop_factor=crop_factor)
+        return {name: _calibration(camera) for name, camera in stated.items()}
+
+    def save(self, path: str | os.PathLike[str], format: str | None = None) -> None:
+        """Writes a calibration file, in the pixel convention of its format; docs/calibration.md lists the formats.
+
+        format: name of the format; None: found from the whole name of the file (such as transforms.json), then the
+        format that the camera was loaded from if it has the suffix, then the usual format of the suffix. A camera that
+        is unchanged since it was loaded keeps its numbers to the last bit. Raises InputError, which names other formats
+        if this one cannot hold the model, and ImageFileError if the file cannot be written.
+        """
+        save({self.name or "camera": self}, path, format)
+
+    @staticmethod
+    def save_all(path: str | os.PathLike[str], cameras: Mapping[str, Calibration], format: str | None = None) -> None:
+        """Writes several cameras with their relative poses to one file, as load_all reads them.
+
+        cameras: by their names, in the order of the file. The poses follow from `extrinsics`: a transform from a frame
+        that all cameras state, or "camera_from_previous" of all but the first. If the format states poses in another
+        frame than the cameras, the axes of the first camera take its place. Raises what save raises.
+        """
+        save(cameras, path, format)
 
     @staticmethod
     def opencv(K: ArrayLike, D: ArrayLike, size: tuple[int, int]) -> Calibration:
@@ -112,14 +144,16 @@ class Calibration(StatedCamera):
         """Returns the calibration of the picture scaled to another size."""
         width, height = picture_size(size)
         scale = np.diag([width / self.size[0], height / self.size[1], 1.0])
-        return replace(self, camera_model=self.camera_model.transformed(scale), size=(width, height))
+        return replace(self, camera_model=self.camera_model.transformed(scale), size=(width, height), file_values={})
 
     def cropped(self, left: int, top: int, width: int, height: int) -> Calibration:
         """Returns the calibration of a part of the picture, whose first pixel is (left, top). Raises InputError."""
         size = picture_size((width, height))
         if left < 0 or top < 0 or left + size[0] > self.size[0] or top + size[1] > self.size[1]:
             raise InputError(f"the part exceeds the picture of {self.size[0]} x {self.size[1]} pixels")
-        return replace(self, camera_model=self.camera_model.transformed(shift(-left, -top)), size=size)
+        film = self.film_mm and (self.film_mm[0] * size[0] / self.size[0], self.film_mm[1] * size[1] / self.size[1])
+        model = self.camera_model.transformed(shift(-left, -top))
+        return replace(self, camera_model=model, size=size, file_values={}, film_mm=film)
 
     def undistort(
         self,
@@ -162,6 +196,10 @@ class Calibration(StatedCamera):
         status[is_ok & (beyond > 0)] = PointStatus.OUTSIDE_PICTURE
         if self.camera_model.is_extrapolated:
             status[is_ok & (beyond > np.hypot(*self.size))] = PointStatus.NO_PROJECTION
+
+
+def _calibration(stated: StatedCamera) -> Calibration:
+    return Calibration(**{entry.name: getattr(stated, entry.name) for entry in fields(stated)})
 
 
 def _matrix(values: ArrayLike, name: str = "K") -> Array:

@@ -9,7 +9,7 @@ from .arrays import picture_size
 from .errors import CalibrationFileError
 from .files.document import Document
 from .formats import FORMATS
-from .formats.format import Format, Options
+from .formats.format import Cameras, Format, Options
 from .stated_camera import StatedCamera
 
 
@@ -24,15 +24,39 @@ def load(
     """See Calibration.load."""
     options = Options(None if size is None else picture_size(size), crop_factor)
     document = Document(path)
+    cameras = _cameras(document, format, options)
+    return _with_size(document, cameras[_chosen(document, list(cameras), camera)](), options)
+
+
+def load_all(
+    path: str | os.PathLike[str],
+    format: str | None = None,
+    *,
+    size: tuple[int, int] | None = None,
+    crop_factor: float | None = None,
+) -> dict[str, StatedCamera]:
+    """See Calibration.load_all."""
+    options = Options(None if size is None else picture_size(size), crop_factor)
+    document = Document(path)
+    cameras = _cameras(document, format, options)
+    if not cameras:
+        document.fail("holds no camera")
+    return {name: _with_size(document, read(), options) for name, read in cameras.items()}
+
+
+def _cameras(document: Document, format: str | None, options: Options) -> Cameras:
     found = _format_named(format) if format is not None else _format_of(document)
-    cameras = found.cameras(document, options)
-    calibration = cameras[_chosen(document, list(cameras), camera)]()
-    if options.size is not None and calibration.size != options.size:
+    return found.cameras(document, options)
+
+
+def _with_size(document: Document, camera: StatedCamera, options: Options) -> StatedCamera:
+    """Returns the camera. Raises InputError if it has another size than the caller states."""
+    if options.size is not None and camera.size != options.size:
         raise InputError(
-            f"{document.path}: states a picture of {calibration.size[0]} x {calibration.size[1]} pixels, not "
+            f"{document.path}: states a picture of {camera.size[0]} x {camera.size[1]} pixels, not "
             f"{options.size[0]} x {options.size[1]}; Calibration.resized converts it"
         )
-    return calibration
+    return camera
 
 
 def _format_named(name: str) -> Format:

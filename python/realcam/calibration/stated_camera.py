@@ -17,7 +17,9 @@ class StatedCamera:
     camera_model: the equations, in realcam's pixels. size: (width, height) in pixels. model: name of the model in its
     file format. name: of the camera in its file. format: of the file; empty for a camera that was not loaded.
     pixel_origin: coordinate of the centre of the first pixel in the file's own convention. extrinsics: (4, 4) rigid
-    transforms, metres, under names such as "camera_from_imu". file_values: parameters as the file states them.
+    transforms, metres, under names such as "camera_from_imu". file_values: parameters as the file states them; empty
+    for a camera that was not loaded, or that was changed afterwards. film_mm: (width, height) of the film, if known.
+    poses: (4, 4) transforms from camera axes to the world's, in the file's unit of length, by the names of pictures.
     """
 
     camera_model: CameraModel
@@ -28,6 +30,8 @@ class StatedCamera:
     pixel_origin: float = 0.5
     extrinsics: Mapping[str, Array] = field(default_factory=dict)
     file_values: Mapping[str, Any] = field(default_factory=dict)
+    film_mm: tuple[float, float] | None = None
+    poses: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "size", picture_size(self.size))

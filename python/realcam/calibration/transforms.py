@@ -28,3 +28,18 @@ def inverse_of(transform: Array) -> Array:
     inverse[:3, :3] = transform[:3, :3].T
     inverse[:3, 3] = -transform[:3, :3].T @ transform[:3, 3]
     return inverse
+
+
+def turned(rotation: Array, translation: Array) -> Array:
+    """Returns the transform of a (3, 3) rotation and a translation."""
+    transform = np.eye(4)
+    transform[:3, :3], transform[:3, 3] = rotation, translation
+    return transform
+
+
+def quaternion(transform: Array) -> list[float]:
+    """Returns the unit quaternion (w, x, y, z) of a rigid transform, with w >= 0."""
+    from scipy.spatial.transform import Rotation  # slow to load
+
+    x, y, z, w = Rotation.from_matrix(transform[:3, :3]).as_quat(canonical=True).tolist()
+    return [w, x, y, z]

@@ -1,22 +1,23 @@
-"""Readers of calibration files, one module for each format, in the order in which a file is compared with them."""
+"""Readers and writers of calibration files, in the order in which a file is compared with their formats."""
 
 from . import (
     basalt,
     camodocal,
     carla,
     colmap,
-    ftheta,
     kalibr,
     kitti,
     lcp,
     lensfun,
     matlab,
     metashape,
+    ncore,
     nerfstudio,
     nuscenes,
     ocam,
     omniverse,
     opencv,
+    rig,
     ros,
     three_de,
 )
@@ -36,8 +37,8 @@ FORMATS: tuple[Format, ...] = (
     kitti.FORMAT,
     nuscenes.FORMAT,
     carla.FORMAT,
-    ftheta.NCORE,
-    ftheta.RIG,
+    ncore.FORMAT,
+    rig.FORMAT,
     omniverse.FORMAT,
     camodocal.FORMAT,
     lensfun.FORMAT,

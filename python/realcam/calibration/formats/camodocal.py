@@ -6,16 +6,21 @@ f = gamma / (1 + xi).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..files.document import Document
 from ..files.entries import Entries
+from ..files.output import yaml_content
 from ..models.central import CentralModel, camera_matrix
-from ..models.opencv_models import fisheye_model, omnidirectional_model, pinhole_model
+from ..models.opencv_models import fisheye_coefficients, fisheye_model, omnidirectional_model, pinhole_model
+from ..models.projections import Equidistant, Perspective, UnifiedSphere
+from ..models.terms import Inexpressible, Terms, terms_of
 from ..stated_camera import StatedCamera
-from .format import Cameras, Format, Options, sole
+from .format import Cameras, Format, Options, Saved, Writer, sole
 
 
 def _matrix(entries: Entries, fx: str, fy: str, cx: str, cy: str) -> np.ndarray:
@@ -70,4 +75,52 @@ def cameras(document: Document, options: Options) -> Cameras:
     return sole("camera", lambda: _camera(Entries(document, document.mapping())))
 
 
-FORMAT = Format("camodocal", lambda d: "model_type" in d.mapping(), cameras)
+def _radtan(terms: Terms) -> dict[str, float]:
+    terms.without("bottom", "prism", "tilt", "is_sequential")
+    return dict(zip(("k1", "k2", "p1", "p2"), [*terms.even(terms.top, 2), *terms.tangential], strict=True))
+
+
+def _values(camera: StatedCamera) -> Mapping[str, Any]:
+    terms = terms_of(camera)
+    values: dict[str, Any] = {
+        "camera_name": camera.name or "camera",
+        "image_width": camera.size[0],
+        "image_height": camera.size[1],
+    }
+    matrix = terms.pixel_matrix(0.0)
+    if isinstance(terms.projection, Equidistant):
+        k = fisheye_coefficients(terms)
+        keys = ("k2", "k3", "k4", "k5", "mu", "mv", "u0", "v0")
+        named = dict(zip(keys, [*k, *matrix], strict=True))
+        return {"model_type": "KANNALA_BRANDT", **values, "projection_parameters": named}
+    if isinstance(terms.projection, Perspective):
+        named = dict(zip(("fx", "fy", "cx", "cy"), matrix, strict=True))
+        distortion = _radtan(terms)
+        return {
+            "model_type": "PINHOLE",
+            **values,
+            "distortion_parameters": distortion,
+            "projection_parameters": named,
+        }
+    if isinstance(terms.projection, UnifiedSphere):
+        named = dict(zip(("gamma1", "gamma2", "u0", "v0"), matrix, strict=True))
+        return {
+            "model_type": "MEI",
+            **values,
+            "mirror_parameters": {"xi": terms.projection.xi},
+            "distortion_parameters": _radtan(terms),
+            "projection_parameters": named,
+        }
+    raise Inexpressible(f"has no model of the kind {type(terms.projection).__name__}")
+
+
+def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    return {path: yaml_content(cameras[0].values, "%YAML:1.0\n---\n")}
+
+
+FORMAT = Format(
+    "camodocal",
+    lambda d: "model_type" in d.mapping(),
+    cameras,
+    Writer(("*.yaml", "*.yml"), _values, _content, is_single=True),
+)

@@ -1,93 +1,27 @@
-"""Cameras of COLMAP (cameras.txt, cameras.bin). First pixel: 0.5.
+"""Cameras of COLMAP (cameras.txt, cameras.bin), with the poses of the file of images beside it. First pixel: 0.5.
 
-Source: COLMAP's src/colmap/sensor/models.h. Models of an angle are refused from 90 degrees on, as COLMAP does.
+Source: COLMAP's documentation, "Output format". Models of an angle are refused from 90 degrees on, as COLMAP does.
 """
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
-
-import numpy as np
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 from ..files.document import Document
 from ..files.entries import Entries
+from ..files.output import numbers
 from ..models.central import CentralModel, camera_matrix
-from ..models.distortion import BrownConrady
-from ..models.opencv_models import distortion_of, fisheye_distortion
-from ..models.projections import Equidistant, ExtendedUnified, FieldOfViewAngle, Perspective, Projection
-from ..models.radial import RationalRadius, even_powers
-from ..models.ray_polynomials import RayPolynomial
+from ..models.terms import terms_of
 from ..stated_camera import StatedCamera
-from .format import Cameras, Format, Options
-
-Coefficients = Sequence[float]
-
-
-class _Model(NamedTuple):
-    """focal_lengths: 1 or 2 of them. coefficients: the number of parameters behind the principal point."""
-
-    name: str
-    focal_lengths: int
-    coefficients: int
-    make: Callable[[Coefficients], tuple[Projection, BrownConrady]]
-
-    @property
-    def parameters(self) -> int:
-        return self.focal_lengths + 2 + self.coefficients
+from .colmap_images import images_content, poses_beside
+from .colmap_models import BY_NAME, MODELS, Model, model_and_parameters
+from .format import Cameras, Format, Options, Saved, Writer
 
 
-def _polynomial(k: Coefficients) -> tuple[Projection, BrownConrady]:
-    return Perspective(), BrownConrady(RationalRadius(even_powers(k)))
-
-
-def _angle_polynomial(k: Coefficients) -> tuple[Projection, BrownConrady]:
-    return Equidistant(), fisheye_distortion(k)
-
-
-def _thin_prism_fisheye(c: Coefficients) -> tuple[Projection, BrownConrady]:
-    k1, k2, p1, p2, k3, k4, sx1, sy1 = c
-    radius = RationalRadius(even_powers([k1, k2, k3, k4]))
-    return Equidistant(), BrownConrady(radius, (p1, p2), (sx1, 0.0, sy1, 0.0))
-
-
-def fisheye624(c: Coefficients) -> tuple[Projection, BrownConrady]:
-    """Project Aria's FISHEYE624 with k0 to k5, p0, p1, s0 to s3; p0 multiplies r^2 + 2 x^2."""
-    p0, p1, *prism = c[6:]
-    radius = RationalRadius(even_powers(c[:6]))
-    return Equidistant(), BrownConrady(radius, (p1, p0), (prism[0], prism[1], prism[2], prism[3]), is_sequential=True)
-
-
-def _division(c: Coefficients) -> tuple[Projection, BrownConrady]:
-    """The ray of a distorted point (x, y) is (x, y, 1 + k r^2) (A. Fitzgibbon, CVPR 2001)."""
-    return RayPolynomial((1.0, 0.0, c[0]), np.pi / 2), BrownConrady()
-
-
-# By model id.
-MODELS = {
-    0: _Model("SIMPLE_PINHOLE", 1, 0, _polynomial),
-    1: _Model("PINHOLE", 2, 0, _polynomial),
-    2: _Model("SIMPLE_RADIAL", 1, 1, _polynomial),
-    3: _Model("RADIAL", 1, 2, _polynomial),
-    4: _Model("OPENCV", 2, 4, lambda c: (Perspective(), distortion_of(c))),
-    5: _Model("OPENCV_FISHEYE", 2, 4, _angle_polynomial),
-    6: _Model("FULL_OPENCV", 2, 8, lambda c: (Perspective(), distortion_of(c))),
-    7: _Model("FOV", 2, 1, lambda c: (FieldOfViewAngle(c[0]), BrownConrady())),
-    8: _Model("SIMPLE_RADIAL_FISHEYE", 1, 1, _angle_polynomial),
-    9: _Model("RADIAL_FISHEYE", 1, 2, _angle_polynomial),
-    10: _Model("THIN_PRISM_FISHEYE", 2, 8, _thin_prism_fisheye),
-    11: _Model("RAD_TAN_THIN_PRISM_FISHEYE", 2, 12, fisheye624),
-    12: _Model("SIMPLE_DIVISION", 1, 1, _division),
-    13: _Model("DIVISION", 2, 1, _division),
-    14: _Model("SIMPLE_FISHEYE", 1, 0, _angle_polynomial),
-    15: _Model("FISHEYE", 2, 0, _angle_polynomial),
-    16: _Model("EUCM", 2, 2, lambda c: (ExtendedUnified(c[0], c[1]), BrownConrady())),
-}
-BY_NAME = {model.name: model for model in MODELS.values()}
-
-
-def _camera(entries: Entries, model: _Model, name: str) -> StatedCamera:
+def _camera(entries: Entries, model: Model, name: str) -> StatedCamera:
     values = entries.numbers("parameters", model.parameters)
     fx, fy = values[0], values[model.focal_lengths - 1]
     if fx <= 0 or fy <= 0:
@@ -100,7 +34,8 @@ def _camera(entries: Entries, model: _Model, name: str) -> StatedCamera:
         model.name,
         name=name,
         format="colmap",
-        file_values={"parameters": values},
+        file_values={"model": model.name, "parameters": values},
+        poses=poses_beside(entries.document).get(name, {}),
     )
 
 
@@ -155,5 +90,36 @@ def _is_binary(document: Document) -> bool:
     return document.path.name == "cameras.bin" or (0 < count < 1 << 24 and 0 <= model_id < 64)
 
 
-TEXT = Format("colmap", _is_text, text_cameras)
-BINARY = Format("colmap-binary", _is_binary, binary_cameras)
+def _values(camera: StatedCamera) -> Mapping[str, Any]:
+    model, parameters = model_and_parameters(terms_of(camera))
+    return {"model": model.name, "parameters": parameters}
+
+
+def camera_ids(cameras: Sequence[Saved]) -> list[int]:
+    """Returns the names of the cameras as numbers if all are positive integers, and otherwise 1, 2, ..."""
+    names = [saved.name for saved in cameras]
+    if all(name.isascii() and name.isdigit() and 0 < int(name) < 1 << 31 for name in names):
+        return [int(name) for name in names]
+    return list(range(1, len(names) + 1))
+
+
+def _text_content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    lines = ["# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]"]
+    ids = camera_ids(cameras)
+    for number, (_, values, camera) in zip(ids, cameras, strict=True):
+        size = f"{camera.size[0]} {camera.size[1]}"
+        lines.append(f"{number} {values['model']} {size} {numbers(values['parameters'])}")
+    return {path: "".join(f"{line}\n" for line in lines).encode(), **images_content(ids, cameras, path)}
+
+
+def _binary_content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    ids, parts = camera_ids(cameras), [struct.pack("<Q", len(cameras))]
+    for number, (_, values, camera) in zip(ids, cameras, strict=True):
+        model_id = next(key for key, model in MODELS.items() if model.name == values["model"])
+        parameters = values["parameters"]
+        parts.append(struct.pack(f"<iiQQ{len(parameters)}d", number, model_id, *camera.size, *parameters))
+    return {path: b"".join(parts), **images_content(ids, cameras, path)}
+
+
+TEXT = Format("colmap", _is_text, text_cameras, Writer(("cameras.txt", "*.txt"), _values, _text_content))
+BINARY = Format("colmap-binary", _is_binary, binary_cameras, Writer(("cameras.bin", "*.bin"), _values, _binary_content))

@@ -1,9 +1,10 @@
-"""Interface of the readers of file formats."""
+"""Interface of the readers and writers of file formats."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import NamedTuple, NoReturn
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple, NoReturn
 
 from ..files.document import Document
 from ..stated_camera import StatedCamera
@@ -19,16 +20,39 @@ class Options(NamedTuple):
 Cameras = Mapping[str, Callable[[], StatedCamera]]
 
 
+class Saved(NamedTuple):
+    """A camera to be written. name: unique in the file. values: its parameters as the format states them."""
+
+    name: str
+    values: Mapping[str, Any]
+    camera: StatedCamera
+
+
+class Writer(NamedTuple):
+    """How a format is written.
+
+    patterns: file names of the format, as shell patterns; "*.yaml" makes it the usual format of a suffix. values: the
+    parameters of a camera as the format states them; raises Inexpressible. content: the bytes of each file, of which
+    the given path is the first. is_single: True if a file has one camera.
+    """
+
+    patterns: tuple[str, ...]
+    values: Callable[[StatedCamera], Mapping[str, Any]]
+    content: Callable[[Sequence[Saved], Path], Mapping[Path, bytes]]
+    is_single: bool = False
+
+
 class Format(NamedTuple):
     """A file format.
 
     name: as in StatedCamera.format. matches: True if a document looks like a file of the format. cameras: the cameras
-    of a file by name, each as a function that reads it.
+    of a file by name, each as a function that reads it. writer: None if the format is only read.
     """
 
     name: str
     matches: Callable[[Document], bool]
     cameras: Callable[[Document, Options], Cameras]
+    writer: Writer | None = None
 
 
 def stated_size(document: Document, options: Options) -> tuple[int, int]:

@@ -1,28 +1,23 @@
-"""NVIDIA's f-theta model in NCore's JSON and in DriveWorks's rig.json. First pixel: 0.
+"""The f-theta model of NVIDIA's formats: a polynomial between the distance in pixels and the angle to the axis.
 
-Sources: documentation of NCore (FThetaCameraModelParameters) and of DriveWorks ("Camera Modeling"). Only the
-polynomial that the file calls its reference is used; the other one is an approximation of its inverse.
+Sources: documentation of NCore (FThetaCameraModelParameters) and of DriveWorks ("Camera Modeling").
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import Array
-from ..files.document import Document
 from ..files.entries import Entries
 from ..models.central import CentralModel
 from ..models.distortion import BrownConrady
 from ..models.projections import Equidistant
 from ..models.radial import RationalRadius
 from ..models.ray_polynomials import AnglePolynomial
-from ..stated_camera import StatedCamera
-from .format import Cameras, Format, Options, sole, unknown_model
-
-# Margin about the angle of the farthest corner, for a file without a largest angle.
-CORNER_MARGIN = 1.02
+from ..models.terms import Inexpressible, Terms, is_undistorted
 
 
 def pixel_matrix(centre: Sequence[float], c: float, d: float, e: float) -> Array:
@@ -41,8 +36,6 @@ def forward_model(coefficients: Sequence[float], matrix: Array, largest_angle: f
 
 
 MAKERS = {"PIXELDIST_TO_ANGLE": backward_model, "ANGLE_TO_PIXELDIST": forward_model}
-POLYNOMIALS = {"PIXELDIST_TO_ANGLE": "pixeldist_to_angle_poly", "ANGLE_TO_PIXELDIST": "angle_to_pixeldist_poly"}
-RIG_POLYNOMIALS = {"pixeldistance-to-angle": "PIXELDIST_TO_ANGLE", "angle-to-pixeldistance": "ANGLE_TO_PIXELDIST"}
 
 
 def polynomial(entries: Entries, key: str) -> list[float]:
@@ -58,73 +51,43 @@ def angle_limit(value: float) -> float:
     return min(value, np.pi)
 
 
-def _ncore_camera(entries: Entries) -> StatedCamera:
-    reference = entries.choice("reference_poly", MAKERS)
-    if entries.values.get("external_distortion_parameters") is not None:
-        entries.fail("external_distortion_parameters", "null; distortions by a windshield are not read")
-    x, y = entries.numbers("principal_point", 2)
-    c, d, e = entries.numbers("linear_cde", 3) if "linear_cde" in entries else (1.0, 0.0, 0.0)
-    coefficients = polynomial(entries, POLYNOMIALS[reference])
-    limit = angle_limit(entries.positive("max_angle"))
-    model = MAKERS[reference](coefficients, pixel_matrix((x + 0.5, y + 0.5), c, d, e), limit)
-    return StatedCamera(
-        model,
-        entries.size("resolution"),
-        "ftheta",
-        format="ncore",
-        pixel_origin=0.0,
-        file_values=dict(entries.values),
-    )
+class FTheta(NamedTuple):
+    """Parameters of a model. direction: a key of MAKERS. coefficients: of ascending powers, the constant 0 first.
+
+    centre: in realcam's pixels. cde: of the matrix [c d; e 1]. largest_angle: radians.
+    """
+
+    direction: str
+    coefficients: list[float]
+    centre: tuple[float, float]
+    cde: tuple[float, float, float]
+    largest_angle: float
 
 
-def _rig_camera(entries: Entries, name: str) -> StatedCamera:
-    properties = entries.child("properties")
-    if properties.text("Model") != "ftheta":
-        unknown_model(entries.document, f"{properties.where}Model", properties.text("Model"), {"ftheta": None})
-    size = properties.size("width", "height")
-    is_old = "polynomial" not in properties and "bw-poly" in properties
-    direction = "pixeldistance-to-angle" if is_old else properties.choice("polynomial-type", RIG_POLYNOMIALS)
-    coefficients = polynomial(properties, "bw-poly" if is_old else "polynomial")
-    matrix = pixel_matrix(
-        (properties.number("cx") + 0.5, properties.number("cy") + 0.5),
-        properties.number("linear-c", 1.0),
-        properties.number("linear-d", 0.0),
-        properties.number("linear-e", 0.0),
-    )
-    make = MAKERS[RIG_POLYNOMIALS[direction]]
-    limit = _corner_angle(make(coefficients, matrix, np.pi), size) * CORNER_MARGIN
-    model = make(coefficients, matrix, angle_limit(limit))
-    return StatedCamera(
-        model, size, "ftheta", name=name, format="rig", pixel_origin=0.0, file_values=dict(properties.values)
-    )
+def ftheta_of(terms: Terms) -> FTheta:
+    """Returns the f-theta parameters of a model. Raises Inexpressible."""
+    (a, b, u0), (c, scale, v0) = terms.matrix[:2].tolist()
+    cde = (a / scale, b / scale, c / scale)
+    projection = terms.projection
+    if isinstance(projection, AnglePolynomial) and is_undistorted(terms):
+        coefficients = [k / scale**power for power, k in enumerate(projection.coefficients, start=1)]
+        return FTheta("PIXELDIST_TO_ANGLE", [0.0, *coefficients], (u0, v0), cde, projection.limit)
+    if not isinstance(projection, Equidistant):
+        raise Inexpressible(f"has no model of the kind {type(projection).__name__}")
+    terms.without("bottom", "tangential", "prism", "tilt")
+    coefficients = [0.0, scale, *(k * scale for k in terms.top)]
+    return FTheta("ANGLE_TO_PIXELDIST", coefficients, (u0, v0), cde, projection.largest_angle)
 
 
-def _corner_angle(model: CentralModel, size: tuple[int, int]) -> float:
-    """Returns the angle of the farthest corner of the picture in radians; 180 degrees if one has no ray."""
-    width, height = size
-    rays, _ = model.ray(np.array([[0, 0], [width, 0], [0, height], [width, height]], dtype=float))
-    angles = np.arctan2(np.hypot(rays[:, 0], rays[:, 1]), rays[:, 2])
-    return float(angles.max()) if np.isfinite(angles).all() else np.pi
-
-
-def _is_ncore(document: Document) -> bool:
-    return "reference_poly" in document.mapping()
-
-
-def rig_cameras(document: Document, options: Options) -> Cameras:
-    sensors = Entries(document, document.mapping()).child("rig").children("sensors")
-    lenses = [s for s in sensors if "camera" in str(s.values.get("protocol", s.values.get("name", "")))]
-    return {s.text("name"): lambda s=s: _rig_camera(s, s.text("name")) for s in lenses}  # type: ignore[misc]
-
-
-def _is_rig(document: Document) -> bool:
-    rig = document.mapping().get("rig")
-    return isinstance(rig, dict) and "sensors" in rig
-
-
-def ncore_cameras(document: Document, options: Options) -> Cameras:
-    return sole("camera", lambda: _ncore_camera(Entries(document, document.mapping())))
-
-
-NCORE = Format("ncore", _is_ncore, ncore_cameras)
-RIG = Format("rig", _is_rig, rig_cameras)
+def inverse_coefficients(ftheta: FTheta, degree: int = 5) -> list[float]:
+    """Returns the polynomial of the other direction that fits best up to the largest angle; it is no exact inverse."""
+    model = MAKERS[ftheta.direction](ftheta.coefficients[1:], np.eye(3), ftheta.largest_angle)
+    angles = np.linspace(0, min(ftheta.largest_angle, model.largest_angle) * (1 - 1e-9), 512)
+    points = np.column_stack([np.sin(angles), np.zeros_like(angles), np.cos(angles)])
+    distances = model.project(points)[0][:, 0]
+    x, y = (distances, angles) if ftheta.direction == "ANGLE_TO_PIXELDIST" else (angles, distances)
+    is_valid = np.isfinite(x) & np.isfinite(y)
+    unit = float(x[is_valid].max())
+    columns = (x[is_valid, None] / unit) ** np.arange(1, degree + 1)
+    fitted, *_ = np.linalg.lstsq(columns, y[is_valid], rcond=None)
+    return [0.0, *(fitted / unit ** np.arange(1, degree + 1)).tolist()]

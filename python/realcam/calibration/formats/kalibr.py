@@ -5,16 +5,19 @@ Sources: Kalibr's wiki, "Supported models"; C. Mei and P. Rives, ICRA 2007; V. U
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
 from ..files.document import Document
 from ..files.entries import Entries
+from ..files.output import yaml_content
 from ..models.central import CentralModel, camera_matrix
 from ..models.distortion import BrownConrady
-from ..models.opencv_models import distortion_of, fisheye_distortion
+from ..models.opencv_models import distortion_of, fisheye_coefficients, fisheye_distortion
 from ..models.projections import (
     DoubleSphere,
     Equidistant,
@@ -24,8 +27,10 @@ from ..models.projections import (
     Projection,
     UnifiedSphere,
 )
+from ..models.terms import Inexpressible, Terms, is_undistorted, terms_of
+from ..rig import transforms_from_previous
 from ..stated_camera import StatedCamera
-from .format import Cameras, Format, Options
+from .format import Cameras, Format, Options, Saved, Writer
 
 # Projections by camera_model, and the number of intrinsics in front of fu, fv, pu, pv.
 PROJECTIONS: dict[str, tuple[Callable[..., Projection], int]] = {
@@ -85,7 +90,7 @@ def _camera(entries: Entries, name: str) -> StatedCamera:
         format="kalibr",
         pixel_origin=0.0,
         extrinsics=_transforms(entries),
-        file_values={key: entries.numbers(key) for key in ("intrinsics", "distortion_coeffs") if key in entries},
+        file_values=dict(entries.values),
     )
 
 
@@ -100,4 +105,64 @@ def cameras(document: Document, options: Options) -> Cameras:
     }
 
 
-FORMAT = Format("kalibr", lambda d: any("intrinsics" in camera for camera in _chain(d).values()), cameras)
+def _radtan(terms: Terms) -> tuple[str, list[float]]:
+    """Returns the distortion model and its coefficients."""
+    if is_undistorted(terms):
+        return "none", []
+    terms.without("bottom", "prism", "tilt", "is_sequential")
+    return "radtan", [*terms.even(terms.top, 2), *terms.tangential]
+
+
+def _stated(terms: Terms) -> tuple[str, list[float], str, list[float]]:
+    """Returns camera model, its parameters, distortion model and its coefficients."""
+    projection = terms.projection
+    if isinstance(projection, Equidistant):
+        terms.within_90_degrees()
+        return "pinhole", [], "equidistant", fisheye_coefficients(terms)
+    if isinstance(projection, FieldOfViewAngle) and is_undistorted(terms):
+        return "pinhole", [], "fov", [projection.omega]
+    parameters = {
+        Perspective: ("pinhole", ()),
+        UnifiedSphere: ("omni", ("xi",)),
+        DoubleSphere: ("ds", ("xi", "alpha")),
+        ExtendedUnified: ("eucm", ("alpha", "beta")),
+    }
+    if type(projection) not in parameters:
+        raise Inexpressible(f"has no model of the kind {type(projection).__name__}")
+    model, names = parameters[type(projection)]
+    return model, [getattr(projection, name) for name in names], *_radtan(terms)
+
+
+def _values(camera: StatedCamera) -> Mapping[str, Any]:
+    terms = terms_of(camera)
+    model, parameters, distortion, coefficients = _stated(terms)
+    return {
+        "camera_model": model,
+        "intrinsics": [*parameters, *terms.pixel_matrix(0.0)],
+        "distortion_model": distortion,
+        "distortion_coeffs": coefficients,
+        "resolution": list(camera.size),
+    }
+
+
+def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    names = [saved.name for saved in cameras]
+    if not all(name.startswith("cam") and name[3:].isdigit() for name in names):
+        names = [f"cam{index}" for index in range(len(cameras))]
+    steps = [None, *transforms_from_previous([saved.camera for saved in cameras])] if cameras[1:] else [None]
+    chain: dict[str, Any] = {}
+    for name, saved, step in zip(names, cameras, steps, strict=True):
+        poses: dict[str, Any] = {} if step is None else {"T_cn_cnm1": step}
+        if "camera_from_imu" in saved.camera.extrinsics:
+            poses["T_cam_imu"] = saved.camera.extrinsics["camera_from_imu"]
+        own = {key: value for key, value in saved.values.items() if key not in EXTRINSICS}
+        chain[name] = {**poses, **own}
+    return {path: yaml_content(chain)}
+
+
+FORMAT = Format(
+    "kalibr",
+    lambda d: any("intrinsics" in camera for camera in _chain(d).values()),
+    cameras,
+    Writer(("*camchain*.yaml", "*.yaml"), _values, _content),
+)

@@ -6,16 +6,23 @@ Source: A. Geiger, P. Lenz, C. Stiller and R. Urtasun, IJRR 32 (2013) 1231, and 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
 from ..files.document import Document
 from ..files.entries import Entries
-from ..models.central import shift
-from ..models.opencv_models import pinhole_model
+from ..files.output import numbers
+from ..models.central import camera_matrix, shift
+from ..models.opencv_models import opencv_coefficients, pinhole_model
+from ..models.terms import is_undistorted, terms_of
+from ..rig import transforms_from
 from ..stated_camera import StatedCamera
-from .format import Cameras, Format, Options, stated_size
+from ..transforms import inverse_of, turned
+from .format import Cameras, Format, Options, Saved, Writer, stated_size
 
 LINE = re.compile(r"^([A-Za-z]\w*):[ \t]*(.*)$", re.MULTILINE)
 PROJECTION = re.compile(r"P(\d+)|P_rect_(\d+)")
@@ -31,10 +38,10 @@ def _raw(entries: Entries, number: str) -> StatedCamera:
     D = entries.numbers(f"D_{number}", 5)
     extrinsics = {}
     if f"R_{number}" in entries and f"T_{number}" in entries:
-        pose = _transform(entries.matrix(f"R_{number}", 3, 3), entries.matrix(f"T_{number}", 3, 1)[:, 0])
+        pose = turned(entries.matrix(f"R_{number}", 3, 3), entries.matrix(f"T_{number}", 3, 1)[:, 0])
         extrinsics["camera_from_camera0"] = pose
     if f"R_rect_{number}" in entries:
-        extrinsics["rectified_from_camera"] = _transform(entries.matrix(f"R_rect_{number}", 3, 3), np.zeros(3))
+        extrinsics["rectified_from_camera"] = turned(entries.matrix(f"R_rect_{number}", 3, 3), np.zeros(3))
     return StatedCamera(
         pinhole_model(shift(0.5, 0.5) @ matrix, D),
         entries.size(f"S_{number}"),
@@ -62,15 +69,9 @@ def _rectified(entries: Entries, key: str, options: Options) -> StatedCamera:
         name=key,
         format="kitti",
         pixel_origin=0.0,
-        extrinsics={"camera_from_rectified_camera0": _transform(np.eye(3), np.linalg.solve(K, P[:, 3]))},
+        extrinsics={"camera_from_rectified_camera0": turned(np.eye(3), np.linalg.solve(K, P[:, 3]))},
         file_values={"P": P},
     )
-
-
-def _transform(rotation: Array, translation: Array) -> Array:
-    transform = np.eye(4)
-    transform[:3, :3], transform[:3, 3] = rotation, translation
-    return transform
 
 
 def cameras(document: Document, options: Options) -> Cameras:
@@ -88,4 +89,41 @@ def _matches(document: Document) -> bool:
     return any(re.fullmatch(r"K_\d+|P\d+|P_rect_\d+", key) for key, _ in LINE.findall(document.text))
 
 
-FORMAT = Format("kitti", _matches, cameras)
+def _values(camera: StatedCamera) -> Mapping[str, Any]:
+    terms = terms_of(camera)
+    D = opencv_coefficients(terms, (5,))
+    K = camera_matrix(*terms.pixel_matrix(0.0))
+    if is_undistorted(terms) and "camera_from_rectified_camera0" in camera.extrinsics:
+        return {"P": np.column_stack([K, K @ camera.extrinsics["camera_from_rectified_camera0"][:3, 3]])}
+    return {"K": K, "D": D}
+
+
+def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    raw = [saved for saved in cameras if "K" in saved.values]
+    lines: dict[str, str] = {}
+    poses = _poses([saved.camera for saved in raw]) if raw else []
+    for index, ((name, values, camera), pose) in enumerate(zip(raw, poses, strict=True)):
+        number = name if name.isascii() and name.isdigit() else f"{index:02}"
+        lines |= {f"S_{number}": numbers(camera.size), f"K_{number}": numbers(values["K"])}
+        lines |= {f"D_{number}": numbers(values["D"]), f"R_{number}": numbers(pose[:3, :3])}
+        lines |= {f"T_{number}": numbers(pose[:3, 3])}
+        if "rectified_from_camera" in camera.extrinsics:
+            lines[f"R_rect_{number}"] = numbers(camera.extrinsics["rectified_from_camera"][:3, :3])
+    for index, (name, values, camera) in enumerate(saved for saved in cameras if "P" in saved.values):
+        key = name if PROJECTION.fullmatch(name) else f"P{index}"
+        if key.startswith("P_"):
+            lines[f"S_{key[2:]}"] = numbers(camera.size)
+        lines[key] = numbers(values["P"])
+    return {path: "".join(f"{key}: {text}\n" for key, text in lines.items()).encode()}
+
+
+def _poses(cameras: Sequence[StatedCamera]) -> list[Array]:
+    """Returns the transforms from camera 0, or from the first of the cameras if they state another frame."""
+    found = transforms_from("camera0", cameras)
+    if "camera_from_camera0" in cameras[0].extrinsics:
+        return found
+    back = inverse_of(found[0])
+    return [pose @ back for pose in found]
+
+
+FORMAT = Format("kitti", _matches, cameras, Writer(("calib*.txt", "*.txt"), _values, _content))

@@ -7,14 +7,19 @@ Focal lengths are in units of the longer side, centres in units of the width and
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 from ..files.document import Document
 from ..files.entries import Entries
+from ..files.output import xml_elements
 from ..models.central import camera_matrix
-from ..models.opencv_models import fisheye_model, pinhole_model
+from ..models.opencv_models import fisheye_coefficients, fisheye_model, opencv_coefficients, pinhole_model
+from ..models.projections import Equidistant
+from ..models.terms import terms_of
 from ..stated_camera import StatedCamera
-from .format import Cameras, Format, Options, unknown_model
+from .format import Cameras, Format, Options, Saved, Writer, unknown_model
 
 PREFIX = "stCamera:"
 MODELS = {"PerspectiveModel": ("PerspectiveModel", 3), "FisheyeModel": ("FisheyeModel", 2)}
@@ -61,7 +66,13 @@ def _camera(profile: Entries, model: Entries, name: str) -> StatedCamera:
         camera_model = pinhole_model(matrix, [k1, k2, p1, p2, k3])
     else:
         unknown_model(model.document, "profile", kind, MODELS)
-    return StatedCamera(camera_model, (width, height), kind, name=name, format="lcp", file_values=dict(model.values))
+    stated = {"kind": kind, "profile": _texts(profile), "model": _texts(model)}
+    return StatedCamera(camera_model, (width, height), kind, name=name, format="lcp", file_values=stated)
+
+
+def _texts(entries: Entries) -> dict[str, str]:
+    """Returns the values that are no structures, whose text is empty, and no attributes of XML."""
+    return {key: value for key, value in entries.values.items() if value and ":" not in key}
 
 
 def cameras(document: Document, options: Options) -> Cameras:
@@ -77,4 +88,58 @@ def _matches(document: Document) -> bool:
     return document.syntax == "xml" and document.xml.tag == "x:xmpmeta" and "CameraProfiles" in document.text
 
 
-FORMAT = Format("lcp", _matches, cameras)
+def _stated(camera: StatedCamera) -> Mapping[str, Any]:
+    terms = terms_of(camera)
+    is_fisheye = isinstance(terms.projection, Equidistant)
+    if is_fisheye:
+        terms.within_90_degrees()
+        radial, tangential = fisheye_coefficients(terms, 2), [0.0, 0.0]
+    else:
+        k1, k2, p1, p2, k3 = opencv_coefficients(terms, (5,))
+        radial, tangential = [k1, k2, k3], [p2, p1]
+    fx, fy, cx, cy = terms.pixel_matrix(0.5)
+    width, height = camera.size
+    longer = max(width, height)
+    model = {
+        "Version": 2,
+        "FocalLengthX": fx / longer,
+        "FocalLengthY": fy / longer,
+        "ImageXCenter": cx / width,
+        "ImageYCenter": cy / height,
+        **{f"RadialDistortParam{i}": value for i, value in enumerate(radial, start=1)},
+    }
+    if any(tangential):
+        model |= {f"TangentialDistortParam{i}": value for i, value in enumerate(tangential, start=1)}
+    profile = {"Author": "realcam", "CameraRawProfile": "True", "Lens": camera.name or "lens"}
+    profile |= {"ImageWidth": width, "ImageLength": height}
+    return {"kind": "FisheyeModel" if is_fisheye else "PerspectiveModel", "profile": profile, "model": model}
+
+
+def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    profiles = "".join(_profile(saved.values) for saved in cameras)
+    return {path: _FILE.format(profiles=profiles).encode()}
+
+
+def _profile(values: Mapping[str, Any]) -> str:
+    named = [{f"{PREFIX}{key}": value for key, value in values[part].items()} for part in ("profile", "model")]
+    kind = f"{PREFIX}{values['kind']}"
+    return (
+        f'<rdf:li rdf:parseType="Resource">\n{xml_elements(named[0], "")}'
+        f'<{kind} rdf:parseType="Resource">\n{xml_elements(named[1], "")}</{kind}>\n</rdf:li>\n'
+    )
+
+
+_FILE = """<x:xmpmeta xmlns:x="adobe:ns:meta/">
+<rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">
+<rdf:Description rdf:about="" xmlns:photoshop="http://ns.adobe.com/photoshop/1.0/" \
+xmlns:stCamera="http://ns.adobe.com/photoshop/1.0/camera-profile">
+<photoshop:CameraProfiles>
+<rdf:Seq>
+{profiles}</rdf:Seq>
+</photoshop:CameraProfiles>
+</rdf:Description>
+</rdf:RDF>
+</x:xmpmeta>
+"""
+
+FORMAT = Format("lcp", _matches, cameras, Writer(("*.lcp",), _stated, _content))

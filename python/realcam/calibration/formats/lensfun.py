@@ -8,18 +8,22 @@ pinhole camera with the nominal focal length.
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..files.document import Document
 from ..files.entries import Entries, element_entries
+from ..files.output import xml_attributes, xml_elements
 from ..models.central import CentralModel, camera_matrix
 from ..models.distortion import BrownConrady
 from ..models.projections import Perspective
 from ..models.radial import RationalRadius
+from ..models.terms import Inexpressible, terms_of
 from ..stated_camera import StatedCamera
-from .format import Cameras, Format, Options, stated_size
+from .format import Cameras, Format, Options, Saved, Writer, stated_size
 
 DIAGONAL_MM = float(np.hypot(36, 24))  # of a film with crop factor 1
 
@@ -66,9 +70,17 @@ def _camera(lens: _Lens, name: str, options: Options) -> StatedCamera:
     model = CentralModel(
         Perspective(), BrownConrady(RationalRadius(factor)), camera_matrix(focal, focal, size[0] / 2, size[1] / 2)
     )
-    stated = dict(lens.distortion.values)
+    own = {key: value for key, value in lens.entries.values.items() if key in LENS_KEYS and value}
+    film = [side * DIAGONAL_MM / crop / float(np.hypot(*size)) for side in size]
     return StatedCamera(
-        model, size, lens.distortion.text("model"), name=name, format="lensfun", pixel_origin=0.0, file_values=stated
+        model,
+        size,
+        lens.distortion.text("model"),
+        name=name,
+        format="lensfun",
+        pixel_origin=0.0,
+        file_values={"lens": own, "distortion": dict(lens.distortion.values)},
+        film_mm=(film[0], film[1]),
     )
 
 
@@ -94,8 +106,64 @@ def cameras(document: Document, options: Options) -> Cameras:
     }
 
 
+LENS_KEYS = ("maker", "model", "mount", "cropfactor", "aspect-ratio", "type")
+
+
+def _values(camera: StatedCamera) -> Mapping[str, Any]:
+    terms = terms_of(camera)
+    terms.projected_by(Perspective)
+    terms.without("bottom", "tangential", "prism", "tilt")
+    fx, fy, cx, cy = terms.pixel_matrix(0.5)
+    width, height = camera.size
+    if max(abs(fx - fy), abs(cx - width / 2), abs(cy - height / 2)) > 1e-10:
+        raise Inexpressible("has square pixels and the principal point in the centre of the picture")
+    crop = DIAGONAL_MM / float(np.hypot(*camera.film_mm)) if camera.film_mm else 1.0
+    aspect = max(width, height) / min(width, height)
+    diagonal = float(np.hypot(width - 1, height - 1))
+    unit = diagonal / 2 / float(np.hypot(aspect, 1))
+    powers = [k * (unit / fx) ** power for power, k in enumerate(terms.top, start=1)]
+    distortion, scale = _distortion(powers)
+    focal = fx / scale / diagonal * DIAGONAL_MM / crop
+    lens = {"maker": "realcam", "model": camera.name or "lens", "mount": "Generic", "cropfactor": crop}
+    return {
+        "lens": {**lens, "aspect-ratio": aspect},
+        "distortion": {"model": distortion.pop("model"), "focal": focal, **distortion},
+    }
+
+
+def _distortion(powers: Sequence[float]) -> tuple[dict[str, Any], float]:
+    """Returns the model of 1 + sum powers_i r^i and its factor in the centre of the picture. Raises Inexpressible."""
+    p1, p2, p3, p4, *others = [*powers, *[0.0] * 4]
+    if any(others) or (p4 and (p1 or p3)):
+        raise Inexpressible("has only polynomials to the third power, or to the even fourth one")
+    if not p1 and not p3:
+        return {"model": "poly5", "k1": p2, "k2": p4}, 1.0
+    # ptlens is s + c r + b r^2 + a r^3 with s = 1 - a - b - c, in a unit of r that is s times the paraxial one.
+    roots = np.polynomial.Polynomial([-1.0, 1.0, p1, p2, p3]).roots()
+    real = [float(root.real) for root in roots if abs(root.imag) < 1e-12 and root.real > 0]
+    if not real:
+        raise Inexpressible("has no ptlens polynomial for this distortion")
+    s = min(real, key=lambda root: abs(root - 1))
+    return {"model": "ptlens", "a": p3 * s**4, "b": p2 * s**3, "c": p1 * s**2}, s
+
+
+def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    mounts = dict.fromkeys(str(saved.values["lens"].get("mount", "Generic")) for saved in cameras)
+    parts = [f"<mount>{xml_elements({'name': mount}, '').strip()}</mount>\n" for mount in mounts]
+    for _, values, _ in cameras:
+        lens = {"mount": "Generic", **values["lens"]}
+        distortion = f"<distortion{xml_attributes(values['distortion'])}/>"
+        parts.append(f"<lens>\n{xml_elements(lens, '')}<calibration>{distortion}</calibration>\n</lens>\n")
+    return {path: f'<lensdatabase version="1">\n{"".join(parts)}</lensdatabase>\n'.encode()}
+
+
 def _is_database(root: ET.Element) -> bool:
     return root.tag == "lensdatabase"
 
 
-FORMAT = Format("lensfun", lambda d: d.syntax == "xml" and _is_database(d.xml), cameras)
+FORMAT = Format(
+    "lensfun",
+    lambda d: d.syntax == "xml" and _is_database(d.xml),
+    cameras,
+    Writer(("*lensfun*.xml", "*lenses*.xml", "*.xml"), _values, _content),
+)

@@ -6,20 +6,29 @@ Source: nerfstudio's documentation, "Data conventions", and cameras/camera_utils
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 
+from ..._core import InputError
+from ..arrays import Array
 from ..files.document import Document
 from ..files.entries import Entries
+from ..files.output import json_content
 from ..models.central import CentralModel, camera_matrix
 from ..models.distortion import BrownConrady
-from ..models.opencv_models import fisheye_model
-from ..models.projections import Perspective
+from ..models.opencv_models import fisheye_coefficients, fisheye_model
+from ..models.projections import Equidistant, Perspective
 from ..models.radial import RationalRadius, even_powers
+from ..models.terms import terms_of
 from ..stated_camera import StatedCamera
-from .format import Cameras, Format, Options, sole, unknown_model
+from .format import Cameras, Format, Options, Saved, Writer, sole, unknown_model
 
 PERSPECTIVE = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE")
 FISHEYE = "OPENCV_FISHEYE"
+FRAME_KEYS = ("frames", "transform_matrix", "file_path")
 FOCAL_KEYS = ("fl_x", "camera_angle_x")
 
 
@@ -51,11 +60,22 @@ def _model(entries: Entries, size: tuple[int, int]) -> tuple[CentralModel, str]:
     return CentralModel(Perspective(), BrownConrady(RationalRadius(even_powers(k)), tangential), matrix), name
 
 
-def _camera(entries: Entries, name: str) -> StatedCamera:
+AXES = np.diag([1.0, -1.0, -1.0, 1.0])  # from realcam's camera axes to OpenGL's: x right, y up, z backward
+
+
+def _poses(frames: Sequence[Entries]) -> dict[str, Array]:
+    """Returns the poses of pictures by their paths. A frame may lack its pose."""
+    posed = [frame for frame in frames if "transform_matrix" in frame]
+    return {frame.text("file_path"): frame.matrix("transform_matrix", 4, 4) @ AXES for frame in posed}
+
+
+def _camera(entries: Entries, name: str, frames: Sequence[Entries]) -> StatedCamera:
     size = entries.size("w", "h")
     model, model_name = _model(entries, size)
-    stated = {key: value for key, value in entries.values.items() if key not in ("frames", "transform_matrix")}
-    return StatedCamera(model, size, model_name, name=name, format="nerfstudio", file_values=stated)
+    stated = {key: value for key, value in entries.values.items() if key not in FRAME_KEYS}
+    return StatedCamera(
+        model, size, model_name, name=name, format="nerfstudio", file_values=stated, poses=_poses(frames)
+    )
 
 
 def _has_focal_length(values: object) -> bool:
@@ -65,13 +85,14 @@ def _has_focal_length(values: object) -> bool:
 def cameras(document: Document, options: Options) -> Cameras:
     data = document.mapping()
     whole = Entries(document, data)
-    own = [frame for frame in whole.children("frames") if _has_focal_length(frame.values)] if "frames" in data else []
+    frames = list(whole.children("frames")) if "frames" in data else []
+    own = [frame for frame in frames if _has_focal_length(frame.values)]
     if _has_focal_length(data) or not own:
-        return sole("camera", lambda: _camera(whole, ""))
+        return sole("camera", lambda: _camera(whole, "", frames))
     # A frame inherits what it does not state.
     return {
         frame.text("file_path"): lambda frame=frame: _camera(  # type: ignore[misc]
-            Entries(document, {**data, **frame.values}, frame.where), frame.text("file_path")
+            Entries(document, {**data, **frame.values}, frame.where), frame.text("file_path"), [frame]
         )
         for frame in own
     }
@@ -84,4 +105,34 @@ def _matches(document: Document) -> bool:
     return _has_focal_length(data) or _has_focal_length(first)
 
 
-FORMAT = Format("nerfstudio", _matches, cameras)
+def _values(camera: StatedCamera) -> Mapping[str, Any]:
+    terms = terms_of(camera)
+    values: dict[str, Any] = dict(zip(("fl_x", "fl_y", "cx", "cy"), terms.pixel_matrix(0.5), strict=True))
+    values = {**values, "w": camera.size[0], "h": camera.size[1]}
+    if isinstance(terms.projection, Equidistant):
+        terms.within_90_degrees()
+        k = fisheye_coefficients(terms)
+        return {"camera_model": FISHEYE, **values, **{f"k{i}": value for i, value in enumerate(k, 1)}}
+    terms.projected_by(Perspective)
+    terms.without("bottom", "prism", "tilt", "is_sequential")
+    k = terms.even(terms.top, 4)
+    p1, p2 = terms.tangential
+    return {"camera_model": "OPENCV", **values, **{f"k{i}": value for i, value in enumerate(k, 1)}, "p1": p1, "p2": p2}
+
+
+def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    if not cameras[1:]:
+        return {path: json_content({**cameras[0].values, "frames": _frames(cameras[0].camera)})}
+    frames = []
+    for saved in cameras:
+        if not saved.camera.poses:
+            raise InputError(f'camera "{saved.name:.40}" has no poses; nerfstudio has several cameras only by pictures')
+        frames += [{**frame, **saved.values} for frame in _frames(saved.camera)]
+    return {path: json_content({"frames": frames})}
+
+
+def _frames(camera: StatedCamera) -> list[dict[str, Any]]:
+    return [{"file_path": name, "transform_matrix": pose @ AXES} for name, pose in camera.poses.items()]
+
+
+FORMAT = Format("nerfstudio", _matches, cameras, Writer(("transforms*.json", "*.json"), _values, _content))

@@ -5,17 +5,22 @@ Source: H. Caesar et al., CVPR 2020, and the schema of nuscenes-devkit. sensor.j
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from ..errors import CalibrationFileError
 from ..files.document import Document
 from ..files.entries import Entries
-from ..models.central import shift
+from ..files.output import json_content
+from ..models.central import camera_matrix, shift
 from ..models.opencv_models import pinhole_model
+from ..models.projections import Perspective
+from ..models.terms import Inexpressible, is_undistorted, terms_of
+from ..rig import transforms_from
 from ..stated_camera import StatedCamera
-from ..transforms import inverse_of, rigid
-from .format import Cameras, Format, Options, stated_size
+from ..transforms import inverse_of, quaternion, rigid
+from .format import Cameras, Format, Options, Saved, Writer, stated_size
 
 
 def _sensors(document: Document) -> list[dict[str, Any]]:
@@ -50,7 +55,7 @@ def _camera(entries: Entries, name: str, options: Options) -> StatedCamera:
         format="nuscenes",
         pixel_origin=0.0,
         extrinsics={"camera_from_ego": inverse_of(pose)},
-        file_values={"camera_intrinsic": matrix},
+        file_values=dict(entries.values),
     )
 
 
@@ -73,4 +78,27 @@ def cameras(document: Document, options: Options) -> Cameras:
     }
 
 
-FORMAT = Format("nuscenes", lambda d: bool(_sensors(d)), cameras)
+def _values(camera: StatedCamera) -> Mapping[str, Any]:
+    terms = terms_of(camera)
+    terms.projected_by(Perspective)
+    if not is_undistorted(terms):
+        raise Inexpressible("has no distortion, as its pictures are undistorted")
+    return {"camera_intrinsic": camera_matrix(*terms.pixel_matrix(0.0))}
+
+
+def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    transforms = transforms_from("ego", [saved.camera for saved in cameras])
+    sensors = []
+    for (name, values, _), transform in zip(cameras, transforms, strict=True):
+        pose = inverse_of(transform)
+        stated = {"token": name, "sensor_token": name, "translation": pose[:3, 3], "rotation": quaternion(pose)}
+        sensors.append({**stated, **values})
+    return {path: json_content(sensors)}
+
+
+FORMAT = Format(
+    "nuscenes",
+    lambda d: bool(_sensors(d)),
+    cameras,
+    Writer(("calibrated_sensor*.json", "*.json"), _values, _content),
+)

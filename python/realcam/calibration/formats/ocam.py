@@ -8,17 +8,22 @@ inverse of it, and states the range of angles for which invpol was fitted.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
 
 from ..files.document import Document
 from ..files.entries import Entries
+from ..files.output import number
 from ..models.central import CentralModel
 from ..models.distortion import BrownConrady
 from ..models.ocam_projection import InversePolynomial
+from ..models.terms import Inexpressible, is_undistorted, terms_of
 from ..stated_camera import StatedCamera
-from .format import Cameras, Format, Options, sole
+from .format import Cameras, Format, Options, Saved, Writer, sole
 
 KEYS = ("pol", "invpol", "centre", "affine", "size")  # in the order of the file
 AGREEMENT = 0.1  # pixels, within which invpol is the inverse of pol in the range for which it was fitted
@@ -63,7 +68,7 @@ def _camera(document: Document) -> StatedCamera:
     limit = _largest_angle(pol, invpol)
     if not limit:
         entries.fail("invpol", "the inverse of pol")
-    projection = InversePolynomial(tuple(invpol), limit)
+    projection = InversePolynomial(tuple(invpol), limit, forward=tuple(pol))
     return StatedCamera(
         CentralModel(projection, BrownConrady(), matrix),
         size,
@@ -84,4 +89,40 @@ def cameras(document: Document, options: Options) -> Cameras:
     return sole("camera", lambda: _camera(document))
 
 
-FORMAT = Format("ocam", _matches, cameras)
+def _values(camera: StatedCamera) -> Mapping[str, Any]:
+    terms = terms_of(camera)
+    projection = terms.projected_by(InversePolynomial)
+    if not is_undistorted(terms):
+        raise Inexpressible("has no distortion beside its polynomial")
+    (s, e, x), (d, c, y) = terms.matrix[:2].tolist()
+    # The affine matrix [c d; e 1] has no scale of its own, so that the polynomials are scaled.
+    return {
+        "pol": [k * s ** (1 - power) for power, k in enumerate(projection.forward)],
+        "invpol": [k * s for k in projection.coefficients],
+        "centre": [y - 0.5, x - 0.5],
+        "affine": [c / s, d / s, e / s],
+        "size": [camera.size[1], camera.size[0]],
+    }
+
+
+HEADS = {
+    "pol": "polynomial coefficients for the DIRECT mapping function (ocam_model.ss in MATLAB), used by cam2world",
+    "invpol": "polynomial coefficients for the inverse mapping function (ocam_model.invpol), used by world2cam",
+    "centre": 'center: "row" and "column", starting from 0 (C convention)',
+    "affine": 'affine parameters "c", "d", "e"',
+    "size": 'image size: "height" and "width"',
+}
+
+
+def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    lines = []
+    for key, head in HEADS.items():
+        values = cameras[0].values[key]
+        # Values of a file that was read are texts, with the counts of the polynomials.
+        count = f"{len(values)} " if key in ("pol", "invpol") and not isinstance(values, str) else ""
+        text = values if isinstance(values, str) else " ".join(map(number, values))
+        lines.append(f"#{head}\n\n{count}{text}\n\n")
+    return {path: "".join(lines).encode()}
+
+
+FORMAT = Format("ocam", _matches, cameras, Writer(("calib_results*.txt", "*.txt"), _values, _content, is_single=True))

@@ -6,18 +6,23 @@ direction of the f-theta polynomial from its default, 0.00245 radians per pixel.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..files.document import Document
 from ..files.entries import Entries
+from ..files.output import number
 from ..models.central import CameraModel, camera_matrix
-from ..models.opencv_models import fisheye_model, pinhole_model
+from ..models.opencv_models import fisheye_coefficients, fisheye_model, opencv_coefficients, pinhole_model
+from ..models.projections import Equidistant, Perspective
+from ..models.terms import Inexpressible, Terms, terms_of
 from ..stated_camera import StatedCamera
-from .format import Cameras, Format, Options
-from .ftheta import angle_limit, backward_model, pixel_matrix, polynomial
-from .texture import lut_model
+from .format import Cameras, Format, Options, Saved, Writer
+from .ftheta import angle_limit, backward_model, ftheta_of, pixel_matrix, polynomial
+from .texture import lut_contents, lut_model
 from .usd_text import camera_prims
 
 PREFIX = "omni:lensdistortion:"
@@ -72,7 +77,7 @@ def _camera(document: Document, name: str, values: dict[str, object]) -> StatedC
     prefix = f"{PREFIX}{model}:"
     own = {key.removeprefix(prefix): value for key, value in values.items() if key.startswith(prefix)}
     camera_model, size = MODELS[model](Entries(document, own, f"{name}.{prefix}"))
-    return StatedCamera(camera_model, size, model, name=name, format="omniverse", file_values=own)
+    return StatedCamera(camera_model, size, model, name=name, format="omniverse", file_values={"model": model, **own})
 
 
 def cameras(document: Document, options: Options) -> Cameras:
@@ -83,4 +88,131 @@ def cameras(document: Document, options: Options) -> Cameras:
     }
 
 
-FORMAT = Format("omniverse", lambda d: d.syntax == "usda" and f"{PREFIX}model" in d.text, cameras)
+def _opencv_values(terms: Terms) -> dict[str, Any]:
+    fx, fy, cx, cy = terms.pixel_matrix(0.5)
+    matrix = {"fx": fx, "fy": fy, "cx": cx, "cy": cy}
+    if isinstance(terms.projection, Equidistant):
+        terms.within_90_degrees()
+        k = fisheye_coefficients(terms)
+        coefficients = {f"k{i}": value for i, value in enumerate(k, start=1)}
+        return {"model": "opencvFisheye", **matrix, **coefficients, "imageSize": terms.size}
+    terms.projected_by(Perspective)
+    D = opencv_coefficients(terms, (12,))
+    return {"model": "opencvPinhole", **matrix, **dict(zip(PINHOLE_KEYS, D, strict=True)), "imageSize": terms.size}
+
+
+def _ftheta_values(terms: Terms) -> dict[str, Any]:
+    ftheta = ftheta_of(terms)
+    if ftheta.direction != "PIXELDIST_TO_ANGLE" or ftheta.cde != (1, 0, 0) or any(ftheta.coefficients[5:]):
+        raise Inexpressible("has only k0 to k4 of f-theta, from pixels to angles, for square pixels")
+    coefficients = [*ftheta.coefficients, *[0.0] * 5][:5]
+    size = {"nominalWidth": float(terms.size[0]), "nominalHeight": float(terms.size[1])}
+    return {
+        "model": "ftheta",
+        **size,
+        "opticalCenter": ftheta.centre,
+        "maxFov": 2 * float(np.degrees(ftheta.largest_angle)),
+        **{f"k{i}": value for i, value in enumerate(coefficients)},
+    }
+
+
+def _values(camera: StatedCamera) -> Mapping[str, Any]:
+    """Returns the attributes of the model; a model without attributes of its own becomes textures."""
+    for state in (_opencv_values, _ftheta_values):
+        try:
+            return state(terms_of(camera))
+        except Inexpressible:
+            continue
+    width, height = map(float, camera.size)
+    size = {"nominalWidth": width, "nominalHeight": height, "opticalCenter": (width / 2, height / 2)}
+    return {"model": "lut", **size, **dict.fromkeys(TEXTURES, "")}
+
+
+TEXTURES = {"rayEnterDirectionTexture": "ray_enter_direction", "rayExitPositionTexture": "ray_exit_position"}
+SCHEMAS = {
+    "opencvPinhole": "OmniLensDistortionOpenCvPinholeAPI",
+    "opencvFisheye": "OmniLensDistortionOpenCvFisheyeAPI",
+    "ftheta": "OmniLensDistortionFthetaAPI",
+    "lut": "OmniLensDistortionLutAPI",
+}
+TYPES = {"imageSize": "int2", "opticalCenter": "float2", **dict.fromkeys(TEXTURES, "asset")}
+APERTURE_MM = 20.955  # USD's default of horizontalAperture
+
+
+def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    files: dict[Path, bytes] = {}
+    names = _prim_names([saved.name for saved in cameras])
+    prims = []
+    for name, (_, values, camera) in zip(names, cameras, strict=True):
+        attributes = dict(values)
+        if values["model"] == "lut":
+            for (key, texture), content in zip(TEXTURES.items(), lut_contents(camera), strict=True):
+                attributes[key] = f"./{path.stem}_{name}_{texture}.exr"
+                files[path.with_name(attributes[key][2:])] = content
+        prims.append(_prim(name, attributes, camera))
+    head = f'#usda 1.0\n(\n    defaultPrim = "{names[0]}"\n    metersPerUnit = 1\n    upAxis = "Y"\n)\n'
+    return {path: (head + "".join(prims)).encode(), **files}
+
+
+def _prim_names(names: Sequence[str]) -> list[str]:
+    """Returns identifiers of USD, which are unique."""
+    found: list[str] = []
+    for name in names:
+        word = "".join(c if c.isascii() and (c.isalnum() or c == "_") else "_" for c in name) or "Camera"
+        word = word if not word[0].isdigit() else f"Camera_{word}"
+        found.append(word if word not in found else f"{word}_{len(found)}")
+    return found
+
+
+def _prim(name: str, values: Mapping[str, Any], camera: StatedCamera) -> str:
+    model = str(values["model"])
+    width, height = camera.size
+    K = camera.camera_model.camera_matrix
+    aperture = camera.film_mm[0] if camera.film_mm else APERTURE_MM
+    lines = [
+        f"float focalLength = {number(K[0, 0] / width * aperture)}",
+        f"float horizontalAperture = {number(aperture)}",
+        f"float verticalAperture = {number(aperture * height / width)}",
+        f'token {PREFIX}model = "{model}"',
+    ]
+    for key, value in values.items():
+        if key != "model":
+            lines.append(f"{TYPES.get(key, 'float')} {PREFIX}{model}:{key} = {_value(key, value)}")
+    if model == "lut":
+        lines += _older_attributes(values, camera)
+    body = "".join(f"    {line}\n" for line in lines)
+    return f'\ndef Camera "{name}" (\n    prepend apiSchemas = ["{SCHEMAS[model]}"]\n)\n{{\n{body}}}\n'
+
+
+def _older_attributes(values: Mapping[str, Any], camera: StatedCamera) -> list[str]:
+    """Returns the attributes of the generalised projection, which releases without the schema of textures read."""
+    width, height = camera.size
+    enter, exit_ = (values[key] for key in TEXTURES)
+    return [
+        'token cameraProjectionType = "generalizedProjection"',
+        f"float fthetaWidth = {width}",
+        f"float fthetaHeight = {height}",
+        f"float fthetaCx = {width / 2}",
+        f"float fthetaCy = {height / 2}",
+        f"asset generalizedProjectionDirectionTexturePath = @{enter}@",
+        f"asset generalizedProjectionNDCTexturePath = @{exit_}@",
+    ]
+
+
+def _value(key: str, value: Any) -> str:
+    """Returns a value as USD text; those of a file that was read are texts already."""
+    if TYPES.get(key) == "asset":
+        return f"@{value}@"
+    if isinstance(value, str):
+        words = value.replace(",", " ").split()
+    else:
+        words = [number(v) for v in value] if isinstance(value, tuple) else [number(value)]
+    return f"({', '.join(words)})" if key in TYPES else words[0]
+
+
+FORMAT = Format(
+    "omniverse",
+    lambda d: d.syntax == "usda" and f"{PREFIX}model" in d.text,
+    cameras,
+    Writer(("*.usda",), _values, _content),
+)

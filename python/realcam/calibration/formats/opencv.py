@@ -5,12 +5,15 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from typing import Any
 
+from ..arrays import Array
 from ..files.document import Document
 from ..files.entries import Entries
 from ..models.central import shift
 from ..models.opencv_models import LENGTHS, fisheye_model, pinhole_model
 from ..stated_camera import StatedCamera
+from ..transforms import turned
 from .format import Cameras, Format, Options, sole, stated_size
+from .opencv_storage import WRITER
 
 MATRICES = ("camera_matrix", "Camera_Matrix", "cameraMatrix", "K", "mtx")
 COEFFICIENTS = ("distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "D", "dist")
@@ -44,6 +47,13 @@ def _size(entries: Entries, options: Options) -> tuple[int, int]:
     return entries.size(*keys) if keys else stated_size(entries.document, options)
 
 
+def _pose_of_second(entries: Entries) -> dict[str, Array]:
+    """Returns R and T of cv2.stereoCalibrate, from the first camera to the second."""
+    if "R" not in entries or "T" not in entries:
+        return {}
+    return {"camera_from_previous": turned(entries.matrix("R", 3, 3), entries.matrix("T", 3, 1)[:, 0])}
+
+
 def _camera(entries: Entries, matrix_key: str, coefficient_key: str, options: Options, name: str = "") -> StatedCamera:
     matrix = entries.matrix(matrix_key, 3, 3)
     if matrix[2].tolist() != [0, 0, 1] or matrix[0, 0] <= 0 or matrix[1, 1] <= 0:
@@ -59,7 +69,8 @@ def _camera(entries: Entries, matrix_key: str, coefficient_key: str, options: Op
         name=name,
         format="opencv",
         pixel_origin=0.0,
-        file_values={"camera_matrix": matrix, "distortion_coefficients": D},
+        extrinsics=_pose_of_second(entries) if matrix_key == STEREO[1] else {},
+        file_values={"camera_matrix": matrix, "distortion_coefficients": D, "is_fisheye": is_fisheye},
     )
 
 
@@ -74,4 +85,4 @@ def cameras(document: Document, options: Options) -> Cameras:
     return sole("camera", lambda: _camera(entries, _key(entries, MATRICES), _key(entries, COEFFICIENTS), options))
 
 
-FORMAT = Format("opencv", lambda d: any(key in _storage(d) for key in (*MATRICES, *STEREO)), cameras)
+FORMAT = Format("opencv", lambda d: any(key in _storage(d) for key in (*MATRICES, *STEREO)), cameras, WRITER)

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
 from ..files.document import Document
 from ..files.entries import Entries
-from ..models.central import CentralModel, shift
-from ..models.opencv_models import fisheye_model, pinhole_model
+from ..files.output import plain, yaml_content
+from ..models.central import CentralModel, camera_matrix, shift
+from ..models.opencv_models import fisheye_coefficients, fisheye_model, opencv_coefficients, pinhole_model
+from ..models.projections import Equidistant
+from ..models.terms import terms_of
 from ..stated_camera import StatedCamera
-from .format import Cameras, Format, Options, sole
+from .format import Cameras, Format, Options, Saved, Writer, sole
 
 # Models by name, with the numbers of coefficients that they may have.
 MODELS: dict[str, tuple[Callable[[Array, list[float]], CentralModel], tuple[int, ...]]] = {
@@ -58,7 +63,8 @@ def _camera(entries: Entries) -> StatedCamera:
         extrinsics["rectified_from_camera"] = np.eye(4)
         extrinsics["rectified_from_camera"][:3, :3] = entries.matrix(rotation, 3, 3)
     projection = _key(entries, "projection_matrix", "P", "p")
-    values = {"projection_matrix": entries.matrix(projection, 3, 4)} if projection in entries else {}
+    if projection in entries:
+        entries.matrix(projection, 3, 4)
     name = entries.values.get("camera_name")
     return StatedCamera(
         _model(entries).transformed(region),
@@ -68,7 +74,7 @@ def _camera(entries: Entries) -> StatedCamera:
         format="ros",
         pixel_origin=0.0,
         extrinsics=extrinsics,
-        file_values=values,
+        file_values=dict(entries.values),
     )
 
 
@@ -81,4 +87,34 @@ def cameras(document: Document, options: Options) -> Cameras:
     return sole("camera", lambda: _camera(Entries(document, document.mapping())))
 
 
-FORMAT = Format("ros", _matches, cameras)
+def _values(camera: StatedCamera) -> Mapping[str, Any]:
+    terms = terms_of(camera)
+    if isinstance(terms.projection, Equidistant):
+        terms.within_90_degrees()
+        model, D = "equidistant", fisheye_coefficients(terms)
+    else:
+        D = opencv_coefficients(terms, (5, 8, 12, 14))
+        model = "plumb_bob" if len(D) == 5 else "rational_polynomial"
+    K = camera_matrix(*terms.pixel_matrix(0.0))
+    R = camera.extrinsics.get("rectified_from_camera", np.eye(4))[:3, :3]
+    return {
+        "image_width": camera.size[0],
+        "image_height": camera.size[1],
+        "camera_name": camera.name or "camera",
+        "camera_matrix": _matrix(K),
+        "distortion_model": model,
+        "distortion_coefficients": _matrix(np.array([D])),
+        "rectification_matrix": _matrix(R),
+        "projection_matrix": _matrix(np.column_stack([K, np.zeros(3)])),
+    }
+
+
+def _matrix(values: Array) -> dict[str, Any]:
+    return {"rows": values.shape[0], "cols": values.shape[1], "data": plain(values.ravel())}
+
+
+def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    return {path: yaml_content(cameras[0].values)}
+
+
+FORMAT = Format("ros", _matches, cameras, Writer(("*camera_info*.yaml", "*.yaml"), _values, _content, is_single=True))

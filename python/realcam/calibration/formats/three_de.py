@@ -7,18 +7,22 @@ generic_anamorphic_distortion. Polynomials map distorted to undistorted points, 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
 from ..files.document import Document
 from ..files.entries import Entries
+from ..files.output import number
 from ..models.central import CentralModel
 from ..models.projections import Perspective
+from ..models.terms import Inexpressible, is_undistorted, terms_of
 from ..models.undistortion import Undistortion
 from ..stated_camera import StatedCamera
-from .format import Cameras, Format, Options, stated_size
+from .format import Cameras, Format, Options, Saved, Writer, stated_size
 
 NODE = re.compile(r"^\s*LD_(3DE4?_\w+) \{\s*\n(.*?)^\}", re.MULTILINE | re.DOTALL)
 KNOB = re.compile(r"^\s*(\w+)[ \t]+([^\n]*?)\s*$", re.MULTILINE)
@@ -89,10 +93,16 @@ def _camera(entries: Entries, model: str, name: str, options: Options) -> Stated
             [0, 0, 1],
         ]
     )
-    distortion = Undistortion(lambda points: upward(points * flip) * flip, focal / unit)
-    stated = dict(entries.values)
+    stated = {"node": model, **entries.values}
+    distortion = Undistortion(lambda points: upward(points * flip) * flip, focal / unit, stated)
     return StatedCamera(
-        CentralModel(Perspective(), distortion, matrix), size, model, name=name, format="3de4", file_values=stated
+        CentralModel(Perspective(), distortion, matrix),
+        size,
+        model,
+        name=name,
+        format="3de4",
+        file_values=stated,
+        film_mm=(10 * width, 10 * height),
     )
 
 
@@ -108,4 +118,49 @@ def cameras(document: Document, options: Options) -> Cameras:
     return found
 
 
-FORMAT = Format("3de4", lambda d: d.syntax == "text" and bool(NODE.search(d.text)), cameras)
+def _values(camera: StatedCamera) -> Mapping[str, Any]:
+    """Returns the knobs of a node. Coefficients do not depend on the resolution, but on the filmback's diagonal."""
+    model = camera.camera_model
+    if not isinstance(model, CentralModel) or not isinstance(model.projection, Perspective):
+        raise Inexpressible("has only distortions of a pinhole camera's picture")
+    (a, skew, u0), (shear, b, v0) = model.matrix[:2].tolist()
+    if skew or shear:
+        raise Inexpressible("has no skew of the pixels")
+    width, height = camera.size
+    filmback = np.array(camera.film_mm or (36.0, 36.0 * height / width)) / 10
+    if isinstance(model.distortion, Undistortion):
+        unit = float(np.hypot(*filmback)) / 2
+        if max(abs(unit / filmback[0] * width / a - 1), abs(unit / filmback[1] * height / b - 1)) > 1e-12:
+            raise Inexpressible("has no cropped pictures")
+        knobs = {**model.distortion.stated, "tde4_focal_length_cm": model.distortion.ratio * unit}
+    else:
+        if not is_undistorted(terms_of(camera)):
+            raise Inexpressible("has no polynomial from undistorted to distorted points")
+        # Pixels of the file are square.
+        filmback[1] = filmback[0] * height / width * a / b
+        knobs = {"node": "3DE4_Radial_Standard_Degree_4", "tde4_focal_length_cm": a / width * filmback[0]}
+    centre = {"x": (u0 / width - 0.5) * filmback[0], "y": (0.5 - v0 / height) * filmback[1]}
+    return {
+        **knobs,
+        "tde4_filmback_width_cm": filmback[0],
+        "tde4_filmback_height_cm": filmback[1],
+        **{f"tde4_lens_center_offset_{axis}_cm": value for axis, value in centre.items()},
+    }
+
+
+def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    nodes = []
+    for name, values, _ in cameras:
+        word = re.sub(r"\W", "_", name, flags=re.ASCII) or "Lens"
+        knobs = {"direction": "distort", **values, "name": word}
+        lines = [f" {k} {v if isinstance(v, str) else number(v)}\n" for k, v in knobs.items() if k != "node"]
+        nodes.append(f"LD_{values['node']} {{\n{''.join(lines)}}}\n")
+    return {path: "".join(nodes).encode()}
+
+
+FORMAT = Format(
+    "3de4",
+    lambda d: d.syntax == "text" and bool(NODE.search(d.text)),
+    cameras,
+    Writer(("*.nk",), _values, _content),
+)

@@ -43,14 +43,14 @@ class CameraModel(Protocol):
 class CentralModel:
     """The camera model of all formats that state a formula.
 
-    matrix: (3, 3) affine map of the distorted plane to pixels. tilt: (3, 3) homography of the distorted plane that
-    precedes it (a tilted sensor).
+    matrix: (3, 3) affine map of the distorted plane to pixels. tilt: angles (tau_x, tau_y) in radians of a tilted
+    sensor, whose homography precedes it.
     """
 
     projection: Projection
     distortion: Distortion
     matrix: Array
-    tilt: Array | None = None
+    tilt: tuple[float, float] | None = None
 
     @cached_property
     def is_extrapolated(self) -> bool:
@@ -110,11 +110,15 @@ class CentralModel:
     def transformed(self, matrix: Array) -> CentralModel:
         return replace(self, matrix=matrix @ self.matrix)
 
+    @cached_property
+    def _homography(self) -> Array | None:
+        return None if self.tilt is None else tilt_homography(*self.tilt)
+
     def _pixels(self, plane: Array) -> tuple[Array, np.ndarray]:
         """Returns pixels of distorted points, and True where these lie in front of a tilted sensor."""
         in_front = np.ones(len(plane), dtype=bool)
-        if self.tilt is not None:
-            tilted = plane @ self.tilt[:, :2].T + self.tilt[:, 2]
+        if self._homography is not None:
+            tilted = plane @ self._homography[:, :2].T + self._homography[:, 2]
             in_front = tilted[:, 2] > 0
             plane = tilted[:, :2] / np.where(in_front, tilted[:, 2], np.nan)[:, None]
         return plane @ self.matrix[:2, :2].T + self.matrix[:2, 2], in_front
@@ -124,13 +128,23 @@ class CentralModel:
         (a, b, u0), (c, d, v0) = self.matrix[:2]
         u, v = pixels[:, 0] - u0, pixels[:, 1] - v0
         plane: Array = np.column_stack([d * u - b * v, a * v - c * u]) / (a * d - b * c)
-        if self.tilt is None:
+        if self._homography is None:
             return plane
-        inverse = np.linalg.inv(self.tilt)
+        inverse = np.linalg.inv(self._homography)
         upright = plane @ inverse[:, :2].T + inverse[:, 2]
         scale = upright[:, 2] / inverse[2, 2]
         plane = upright[:, :2] / np.where(scale > 0, upright[:, 2], np.nan)[:, None]
         return plane
+
+
+def tilt_homography(tau_x: float, tau_y: float) -> Array:
+    """Returns the homography of a tilted sensor, [R33 0 -R13; 0 R33 -R23; 0 0 1] R with R = Ry(tau_y) Rx(tau_x)
+    (Louhichi et al., Measurement Science and Technology 18 (2007) 2616, as in OpenCV)."""
+    about_x = np.array([[1, 0, 0], [0, np.cos(tau_x), np.sin(tau_x)], [0, -np.sin(tau_x), np.cos(tau_x)]])
+    about_y = np.array([[np.cos(tau_y), 0, -np.sin(tau_y)], [0, 1, 0], [np.sin(tau_y), 0, np.cos(tau_y)]])
+    R = about_y @ about_x
+    homography: Array = np.array([[R[2, 2], 0, -R[0, 2]], [0, R[2, 2], -R[1, 2]], [0, 0, 1]]) @ R
+    return homography
 
 
 def camera_matrix(fx: float, fy: float, cx: float, cy: float, skew: float = 0.0) -> Array:

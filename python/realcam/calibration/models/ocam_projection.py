@@ -18,13 +18,15 @@ from .radial import monotone_inverse
 class InversePolynomial:
     """rho = sum c_i (theta - pi / 2)^i (D. Scaramuzza, A. Martinelli and R. Siegwart, ICVS 2006, world2cam).
 
-    limit: of the angle theta to the axis, in radians. On the axis rho is not exactly 0, as the polynomial is fitted;
-    pixels closer to the centre have the direction of the axis.
+    limit: of the angle theta to the axis, in radians. forward: the toolbox's polynomial of the other direction, which
+    is no exact inverse and only goes into files. On the axis rho is not exactly 0, as the polynomial is fitted; pixels
+    closer to the centre have the direction of the axis.
     """
 
     coefficients: tuple[float, ...]
     limit: float
     refusal: PointStatus = PointStatus.NO_PROJECTION
+    forward: tuple[float, ...] = ()
 
     @cached_property
     def _polynomial(self) -> Polynomial:

@@ -1,7 +1,6 @@
 """OpenCV's camera models, which other programs use under other names.
 
-Source: OpenCV's documentation of calib3d, "Camera Calibration and 3D Reconstruction" and "Fisheye camera model"; the
-tilted sensor is that of Louhichi et al., Measurement Science and Technology 18 (2007) 2616.
+Source: OpenCV's documentation of calib3d, "Camera Calibration and 3D Reconstruction" and "Fisheye camera model".
 """
 
 from __future__ import annotations
@@ -16,6 +15,7 @@ from .central import CentralModel
 from .distortion import BrownConrady
 from .projections import Equidistant, Perspective, UnifiedSphere
 from .radial import RationalRadius, even_powers
+from .terms import Inexpressible, Terms
 
 LENGTHS = (0, 4, 5, 8, 12, 14)
 
@@ -35,16 +35,11 @@ def distortion_of(coefficients: Sequence[float]) -> BrownConrady:
     )
 
 
-def tilt_of(coefficients: Sequence[float]) -> Array | None:
-    """Returns the homography of a tilted sensor, [R33 0 -R13; 0 R33 -R23; 0 0 1] R with R = Ry(tau_y) Rx(tau_x)."""
+def tilt_of(coefficients: Sequence[float]) -> tuple[float, float] | None:
+    """Returns the angles (tau_x, tau_y) of a tilted sensor; None if it is upright."""
     if len(coefficients) != 14 or not any(coefficients[12:]):
         return None
-    x, y = coefficients[12:]
-    about_x = np.array([[1, 0, 0], [0, np.cos(x), np.sin(x)], [0, -np.sin(x), np.cos(x)]])
-    about_y = np.array([[np.cos(y), 0, -np.sin(y)], [0, 1, 0], [np.sin(y), 0, np.cos(y)]])
-    R = about_y @ about_x
-    tilt: Array = np.array([[R[2, 2], 0, -R[0, 2]], [0, R[2, 2], -R[1, 2]], [0, 0, 1]]) @ R
-    return tilt
+    return float(coefficients[12]), float(coefficients[13])
 
 
 def pinhole_model(matrix: Array, coefficients: Sequence[float] = ()) -> CentralModel:
@@ -65,3 +60,25 @@ def fisheye_model(matrix: Array, coefficients: Sequence[float], largest_angle: f
 def omnidirectional_model(matrix: Array, xi: float, coefficients: Sequence[float]) -> CentralModel:
     """Returns the model of cv2.omnidir with k1, k2, p1, p2 (C. Mei and P. Rives, ICRA 2007)."""
     return CentralModel(UnifiedSphere(xi), distortion_of(coefficients), matrix)
+
+
+def opencv_coefficients(terms: Terms, lengths: Sequence[int] = LENGTHS[2:]) -> list[float]:
+    """Returns the shortest list of OpenCV's coefficients that states the terms. lengths: those allowed, increasing.
+
+    Raises Inexpressible.
+    """
+    terms.projected_by(Perspective)
+    terms.without("is_sequential")
+    k1, k2, k3 = terms.even(terms.top, 3)
+    D = [k1, k2, *terms.tangential, k3, *terms.even(terms.bottom, 3), *terms.prism, *(terms.tilt or (0.0, 0.0))]
+    needed = max((i + 1 for i, value in enumerate(D) if value), default=0)
+    if needed > lengths[-1]:
+        raise Inexpressible(f"has only {lengths[-1]} of OpenCV's distortion coefficients")
+    return D[: next(length for length in lengths if length >= needed)]
+
+
+def fisheye_coefficients(terms: Terms, count: int = 4) -> list[float]:
+    """Returns k1, k2, ... of theta (1 + k1 theta^2 + k2 theta^4 + ...). Raises Inexpressible."""
+    terms.projected_by(Equidistant)
+    terms.without("bottom", "tangential", "prism", "tilt")
+    return terms.even(terms.top, count)

@@ -33,9 +33,7 @@ class TextureModel:
     @cached_property
     def largest_angle(self) -> float:
         """The smallest angle at which the texture of positions has no pixel."""
-        height, width = self.positions.shape[:2]
-        v, u = np.meshgrid((np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width, indexing="ij")
-        directions = _from_octahedral(np.column_stack([u.ravel(), v.ravel()]) * 2 - 1)
+        directions = octahedral_directions(*self.positions.shape[:2])
         is_empty = (self.positions < 0).any(axis=2).ravel()
         angles = np.arccos(np.clip(directions[:, 2], -1, 1))
         return float(angles[is_empty].min()) if is_empty.any() else np.pi
@@ -118,6 +116,13 @@ class TextureModel:
     def _across(self, coordinates: Array, across: Array, along: Array) -> Array:
         direction = self._direction(coordinates)
         return np.stack([np.sum(direction * across, axis=1), np.sum(direction * along, axis=1)], axis=1)
+
+
+def octahedral_directions(height: int, width: int | None = None) -> Array:
+    """Returns the unit directions of the texels of a texture of positions, row by row. width: None: the height."""
+    width = height if width is None else width
+    v, u = np.meshgrid((np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width, indexing="ij")
+    return _from_octahedral(np.column_stack([u.ravel(), v.ravel()]) * 2 - 1)
 
 
 def _bilinear(texture: Array, coordinates: Array, is_set: Booleans) -> tuple[Array, Booleans]:

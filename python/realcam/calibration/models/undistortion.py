@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -20,10 +21,12 @@ class Undistortion:
     """The inverse of an analytic map of the plane that keeps the centre.
 
     function: ideal points of (N, 2) distorted ones, which may be complex. ratio: of its unit and that of ideal points.
+    stated: the coefficients as the file states them.
     """
 
     function: Callable[[Array], Array]
     ratio: float
+    stated: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def scale(self) -> float:

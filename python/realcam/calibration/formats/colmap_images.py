@@ -1,0 +1,89 @@
+"""Poses of COLMAP's images.txt and images.bin. In the files they lead from the world to the camera's axes."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+from ..._core import InputError
+from ..arrays import Array
+from ..files.document import Document
+from ..files.entries import Entries
+from ..files.output import numbers
+from ..transforms import inverse_of, quaternion, rigid
+from .format import Saved
+
+HEADS = {
+    "images.txt": "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME; then a line of POINTS2D",
+    "points3D.txt": "POINT3D_ID X Y Z R G B ERROR TRACK[]",
+}
+_Image = tuple[str, str, list[float]]  # camera, name of the picture, and QW to TZ
+
+
+def poses_beside(document: Document) -> Mapping[str, Mapping[str, Array]]:
+    """Returns the poses of pictures, camera to world, by camera and name; empty if there is no file of images."""
+    path = document.path.with_name(f"images{document.suffix}")
+    if document.suffix not in (".txt", ".bin") or not path.is_file():
+        return {}
+    images = Document(path)
+    found: dict[str, dict[str, Array]] = {}
+    for camera, name, pose in (_binary_images if document.suffix == ".bin" else _text_images)(images):
+        if not any(pose[:4]):
+            images.fail(f'image "{name:.60}": expected a quaternion that is not 0')
+        found.setdefault(camera, {})[name] = inverse_of(rigid(pose[:4], pose[4:]))
+    return found
+
+
+def _text_images(document: Document) -> Iterator[_Image]:
+    lines = [(i, line) for i, line in enumerate(document.text.splitlines(), 1) if not line.lstrip().startswith("#")]
+    # The line of points after each image may be empty.
+    for i, line in lines[::2]:
+        fields = line.split(maxsplit=9)
+        if len(fields) < 10:
+            document.fail(f"line {i}: expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME")
+        pose = Entries(document, {"pose": fields[1:8]}, f"line {i}: ").numbers("pose", 7)
+        yield fields[8], fields[9].strip(), pose
+
+
+def _binary_images(document: Document) -> Iterator[_Image]:
+    content = document.content
+    try:
+        (count,) = struct.unpack_from("<Q", content)
+        position = 8
+        for _ in range(count):
+            _, *pose, camera = struct.unpack_from("<I7dI", content, position)
+            end = content.index(b"\0", position + 64)
+            name = content[position + 64 : end].decode(errors="replace")
+            (points,) = struct.unpack_from("<Q", content, end + 1)
+            position = end + 9 + 24 * points
+            yield str(camera), name, Entries(document, {"pose": pose}, f"{name:.60}: ").numbers("pose", 7)
+    except (struct.error, ValueError):
+        document.fail(f"ends before its last image, at byte {len(content)}")
+
+
+def images_content(ids: Sequence[int], cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    """Returns the files of images and of points, which are empty, beside a file of cameras; none without poses.
+
+    Raises InputError for names of pictures that the file cannot hold.
+    """
+    images = [
+        (number, name, [*quaternion(pose), *pose[:3, 3].tolist()])
+        for number, saved in zip(ids, cameras, strict=True)
+        for name, pose in ((key, inverse_of(pose)) for key, pose in saved.camera.poses.items())
+    ]
+    if not images:
+        return {}
+    for _, name, _ in images:
+        if not name or any(c.isspace() or c == "\0" for c in name):
+            raise InputError(f"names in COLMAP's files must not be empty or contain spaces; one is {name!r:.60}")
+    if path.suffix.lower() == ".bin":
+        content = b"".join(
+            struct.pack("<I7dI", i, *pose, camera) + name.encode() + b"\0" + struct.pack("<Q", 0)
+            for i, (camera, name, pose) in enumerate(images, start=1)
+        )
+        count = struct.pack("<Q", len(images))
+        return {path.with_name("images.bin"): count + content, path.with_name("points3D.bin"): struct.pack("<Q", 0)}
+    lines = [f"{i} {numbers(pose)} {camera} {name}\n\n" for i, (camera, name, pose) in enumerate(images, start=1)]
+    bodies = {"images.txt": "".join(lines), "points3D.txt": ""}
+    return {path.with_name(file): f"# {head}\n{bodies[file]}".encode() for file, head in HEADS.items()}
