@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._core import InputError
-from . import rectification, resampling
+from . import maps, rectification, resampling
 from .arrays import Array, Integers, picture_size, rows_of
 from .load import load, load_all
 from .models import opencv_models
@@ -39,14 +39,17 @@ class Calibration(StatedCamera):
         *,
         size: tuple[int, int] | None = None,
         crop_factor: float | None = None,
+        camera_matrix: ArrayLike | None = None,
     ) -> Calibration:
         """Loads a calibration file; docs/calibration.md lists the formats.
 
         camera: name of one of several cameras of the file. format: name of the format; None: found from the content,
         then from the suffix. size: (width, height) in pixels, for formats that do not state it. crop_factor: of the
-        camera, for lensfun. Raises CalibrationFileError, InputError.
+        camera, for lensfun. camera_matrix: (3, 3) K of the undistorted picture, for ST maps and tables of cv2.remap
+        that do not state it. Raises CalibrationFileError, InputError.
         """
-        return _calibration(load(path, camera, format, size=size, crop_factor=crop_factor))
+        K = None if camera_matrix is None else _matrix(camera_matrix)
+        return _calibration(load(path, camera, format, size=size, crop_factor=crop_factor, camera_matrix=K))
 
     @staticmethod
     def load_all(
@@ -172,14 +175,21 @@ class Calibration(StatedCamera):
         """
         matrix = self.camera_matrix if camera_matrix is None else _matrix(camera_matrix)
         target = picture_size(self.size if size is None else size)
-        turn = np.eye(3) if rotation is None else _matrix(rotation, "rotation")
+        turn = None if rotation is None else _matrix(rotation, "rotation")
         values = resampling.checked_image(image, self.size)
-        pixels = resampling.pixel_centres(target)
-        rays = np.column_stack([pixels, np.ones(len(pixels))]) @ (np.linalg.inv(matrix).T @ turn)
-        found, status = self.project(rays)
-        found[status != PointStatus.OK] = np.nan
-        sampled = resampling.sampled(values, found, interpolation)
-        return sampled.reshape(target[1], target[0], *values.shape[2:])
+        return resampling.remapped(values, maps.undistorting_map(self, matrix, target, turn), interpolation)
+
+    def redistort(
+        self, image: ArrayLike, *, camera_matrix: ArrayLike | None = None, interpolation: str = "bilinear"
+    ) -> Array:
+        """Returns the picture that this camera would take, from one of a pinhole camera: the inverse of undistort.
+
+        image: (H, W) or (H, W, C), of any size. camera_matrix: of the pinhole camera; default: this camera's. Pixels
+        beside the pinhole camera's picture are NaN. Raises InputError.
+        """
+        matrix = self.camera_matrix if camera_matrix is None else _matrix(camera_matrix)
+        values = resampling.checked_image(image)
+        return resampling.remapped(values, maps.redistorting_map(self, matrix), interpolation)
 
     def stereo_rectification(self, other: Calibration, T: ArrayLike) -> rectification.StereoRectification:
         """Returns rotations and projection matrices that align the rows of two pictures.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 from .._core import InputError
-from .arrays import picture_size
+from .arrays import Array, picture_size
 from .errors import CalibrationFileError
 from .files.document import Document
 from .formats import FORMATS
@@ -20,9 +20,10 @@ def load(
     *,
     size: tuple[int, int] | None = None,
     crop_factor: float | None = None,
+    camera_matrix: Array | None = None,
 ) -> StatedCamera:
     """See Calibration.load."""
-    options = Options(None if size is None else picture_size(size), crop_factor)
+    options = Options(None if size is None else picture_size(size), crop_factor, camera_matrix)
     document = Document(path)
     cameras = _cameras(document, format, options)
     return _with_size(document, cameras[_chosen(document, list(cameras), camera)](), options)
@@ -34,9 +35,10 @@ def load_all(
     *,
     size: tuple[int, int] | None = None,
     crop_factor: float | None = None,
+    camera_matrix: Array | None = None,
 ) -> dict[str, StatedCamera]:
     """See Calibration.load_all."""
-    options = Options(None if size is None else picture_size(size), crop_factor)
+    options = Options(None if size is None else picture_size(size), crop_factor, camera_matrix)
     document = Document(path)
     cameras = _cameras(document, format, options)
     if not cameras:

@@ -22,7 +22,7 @@ class _Written(NamedTuple):
 
 
 # Formats of suffixes that several formats share.
-USUAL = {".yaml": "ros", ".yml": "opencv", ".xml": "opencv", ".json": "opencv", ".txt": "colmap"}
+USUAL = {".yaml": "ros", ".yml": "opencv", ".xml": "opencv", ".json": "opencv", ".txt": "colmap", ".exr": "stmap"}
 WRITERS = {f.name: _Written(f.name, f.writer) for f in FORMATS if f.writer is not None}
 
 

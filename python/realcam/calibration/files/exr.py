@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -35,14 +35,32 @@ def exr_values(path: Path, channels: int, fail: Fail) -> Array:
     return values
 
 
-def exr_content(values: Array, channels: Sequence[str]) -> bytes:
-    """Returns an OpenEXR file with (H, W, C) values in 32 bits. Raises ImageFileError."""
+def exr_attribute(path: Path, name: str) -> str:
+    """Returns a text of a picture's header; empty if there is none."""
+    import OpenImageIO as oiio  # slow to load
+
+    opened = oiio.ImageInput.open(str(path))
+    if opened is None:
+        return ""
+    try:
+        return str(opened.spec().get_string_attribute(name))
+    finally:
+        opened.close()
+
+
+def exr_content(values: Array, channels: Sequence[str], attributes: Mapping[str, str] | None = None) -> bytes:
+    """Returns an OpenEXR file with (H, W, C) values in 32 bits. attributes: texts of its header.
+
+    Raises ImageFileError.
+    """
     import OpenImageIO as oiio  # slow to load
 
     height, width = values.shape[:2]
     spec = oiio.ImageSpec(width, height, len(channels), "float")
     spec.channelnames = tuple(channels)
     spec.attribute("compression", "zip")
+    for name, text in (attributes or {}).items():
+        spec.attribute(name, text)
     with tempfile.TemporaryDirectory(prefix="realcam-") as folder:
         path = Path(folder, "values.exr")
         output = oiio.ImageOutput.create("openexr")

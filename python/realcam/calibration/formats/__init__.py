@@ -9,6 +9,7 @@ from . import (
     kitti,
     lcp,
     lensfun,
+    maps,
     matlab,
     metashape,
     ncore,
@@ -43,5 +44,8 @@ FORMATS: tuple[Format, ...] = (
     camodocal.FORMAT,
     lensfun.FORMAT,
     lcp.FORMAT,
+    maps.REDISTORT,
+    maps.UNDISTORT,
+    maps.REMAP,
     opencv.FORMAT,
 )

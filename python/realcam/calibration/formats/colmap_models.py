@@ -83,19 +83,9 @@ BY_NAME = {model.name: model for model in MODELS.values()}
 
 
 def model_and_parameters(terms: Terms) -> tuple[Model, list[float]]:
-    """Returns the model with the fewest parameters that states the terms, and its parameters. Raises Inexpressible."""
-    fx, fy, cx, cy = terms.pixel_matrix(0.5)
+    """Returns a model with two focal lengths that states the terms, and its parameters. Raises Inexpressible."""
     name, coefficients = _stated(terms)
-    model = BY_NAME[name]
-    # A model with one focal length takes the place of the one with two.
-    simple = _WITH_ONE_FOCAL_LENGTH.get(name)
-    if simple and fx == fy and not any(coefficients[BY_NAME[simple].coefficients :]):
-        model = BY_NAME[simple]
-    focal = [fx, fy][-model.focal_lengths :]
-    return model, [*focal, cx, cy, *coefficients[: model.coefficients]]
-
-
-_WITH_ONE_FOCAL_LENGTH = {"PINHOLE": "SIMPLE_PINHOLE", "FISHEYE": "SIMPLE_FISHEYE", "DIVISION": "SIMPLE_DIVISION"}
+    return BY_NAME[name], [*terms.pixel_matrix(0.5), *coefficients]
 
 
 def _stated(terms: Terms) -> tuple[str, list[float]]:

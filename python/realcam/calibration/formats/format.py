@@ -6,15 +6,20 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
+from ..arrays import Array
 from ..files.document import Document
 from ..stated_camera import StatedCamera
 
 
 class Options(NamedTuple):
-    """Values that the caller adds to those of the file. size: (width, height), pixels. crop_factor: of the camera."""
+    """Values that the caller adds to those of the file.
+
+    size: (width, height), pixels. crop_factor: of the camera. camera_matrix: (3, 3) K in realcam's pixels, for maps.
+    """
 
     size: tuple[int, int] | None = None
     crop_factor: float | None = None
+    camera_matrix: Array | None = None
 
 
 Cameras = Mapping[str, Callable[[], StatedCamera]]

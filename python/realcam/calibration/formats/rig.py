@@ -5,6 +5,7 @@ Source: documentation of DriveWorks, "Rig Configuration" and "Camera Modeling".
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -110,6 +111,9 @@ def _values(camera: StatedCamera) -> Mapping[str, Any]:
 
 def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     transforms = transforms_from("rig", [saved.camera for saved in cameras])
+    if "camera_from_rig" not in cameras[0].camera.extrinsics:
+        # The first camera's axes, as forward, left and up, take the place of the vehicle's.
+        transforms = [transform @ CAMERA_FROM_FLU for transform in transforms]
     sensors = []
     for (name, values, _), transform in zip(cameras, transforms, strict=True):
         pose = {} if POSE in values else {POSE: _pose(transform)}
@@ -121,7 +125,10 @@ def _pose(camera_from_rig: Array) -> dict[str, Any]:
     from scipy.spatial.transform import Rotation  # slow to load
 
     pose = inverse_of(inverse_of(CAMERA_FROM_FLU) @ camera_from_rig)
-    angles = Rotation.from_matrix(pose[:3, :3]).as_euler("xyz", degrees=True)
+    with warnings.catch_warnings():
+        # A camera that looks straight up or down has many such angles; any of them will do.
+        warnings.simplefilter("ignore", UserWarning)
+        angles = Rotation.from_matrix(pose[:3, :3]).as_euler("xyz", degrees=True)
     return {"roll-pitch-yaw": angles, "t": pose[:3, 3]}
 
 

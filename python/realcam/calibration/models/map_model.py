@@ -1,0 +1,127 @@
+"""A camera model given by a map between its picture and that of a pinhole camera, such as an ST map."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array, Booleans, Integers
+from ..status import PointStatus
+from .plane_inverse import plane_inverse
+
+
+@dataclass(frozen=True, eq=False)
+class MapModel:
+    """Positions at pixel centres, with bicubic splines between them.
+
+    positions: (H, W, 2), pixels of one picture that each pixel of the other one shows; NaN if there is none.
+    is_redistorting: False if the positions lie in the camera's picture, and True if they lie in the pinhole camera's.
+    pinhole_matrix: (3, 3) K of the pinhole camera. matrix: (3, 3), from the map's pixels of the camera to its pixels.
+    """
+
+    positions: Array
+    is_redistorting: bool
+    pinhole_matrix: Array
+    matrix: Array
+
+    @property
+    def is_extrapolated(self) -> bool:
+        return False
+
+    @cached_property
+    def largest_angle(self) -> float:
+        """The angle of the corner that is farthest from the axis, of those with a position."""
+        pixels = np.argwhere(self._is_set)[:, ::-1] + 0.5
+        plane = self.positions[self._is_set] if self.is_redistorting else pixels
+        inverse = np.linalg.inv(self.pinhole_matrix)
+        return float(np.arctan(np.hypot(*(plane @ inverse[:2, :2].T + inverse[:2, 2]).T).max()))
+
+    @property
+    def camera_matrix(self) -> Array:
+        step = 1e-3
+        axes = np.array([[0, 0, 1], [step, 0, 1], [0, step, 1], [-step, 0, 1], [0, -step, 1]], dtype=float)
+        centre, right, down, left, up = self.project(axes)[0]
+        matrix = np.eye(3)
+        matrix[:2] = np.column_stack([(right - left) / (2 * step), (down - up) / (2 * step), centre])
+        return matrix
+
+    def project(self, points: Array) -> tuple[Array, Integers]:
+        with np.errstate(invalid="ignore", divide="ignore"):
+            plane = points[:, :2] / np.where(points[:, 2] > 0, points[:, 2], np.nan)[:, None]
+        flat = plane @ self.pinhole_matrix[:2, :2].T + self.pinhole_matrix[:2, 2]
+        found = self._inverse(flat) if self.is_redistorting else self._position(flat)
+        pixels = found @ self.matrix[:2, :2].T + self.matrix[:2, 2]
+        status = np.where(np.isnan(pixels[:, 0]), PointStatus.NO_PROJECTION, PointStatus.OK).astype(np.intp)
+        status[points[:, 2] <= 0] = PointStatus.BEHIND
+        return pixels, status
+
+    def ray(self, pixels: Array) -> tuple[Array, Integers]:
+        own = np.linalg.solve(self.matrix[:2, :2], (pixels - self.matrix[:2, 2]).T).T
+        flat = self._position(own) if self.is_redistorting else self._inverse(own)
+        rays = np.column_stack([flat, np.ones(len(flat))]) @ np.linalg.inv(self.pinhole_matrix).T
+        rays /= np.linalg.norm(rays, axis=1)[:, None]
+        status = np.where(np.isnan(rays[:, 0]), PointStatus.NO_PROJECTION, PointStatus.OK).astype(np.intp)
+        return rays, status
+
+    def transformed(self, matrix: Array) -> MapModel:
+        return replace(self, matrix=matrix @ self.matrix)
+
+    @cached_property
+    def _is_set(self) -> Booleans:
+        is_set: Booleans = np.logical_and.reduce(np.isfinite(self.positions), axis=2)
+        return is_set
+
+    @cached_property
+    def _splines(self) -> list[Any]:
+        from scipy.interpolate import RectBivariateSpline  # slow to load
+        from scipy.ndimage import distance_transform_edt
+
+        height, width = self._is_set.shape
+        # Splines need all values; positions beside a missing one are not used.
+        nearest = distance_transform_edt(~self._is_set, return_distances=False, return_indices=True)
+        filled = self.positions[tuple(nearest)]
+        rows, columns = np.arange(height) + 0.5, np.arange(width) + 0.5
+        degrees = {"kx": min(3, height - 1), "ky": min(3, width - 1)}
+        return [
+            RectBivariateSpline(rows, columns, filled[:, :, i], bbox=[0, height, 0, width], s=0, **degrees)
+            for i in range(2)
+        ]
+
+    def _position(self, pixels: Array) -> Array:
+        found = self._function(pixels)
+        found[~self._is_known(pixels)] = np.nan
+        return found
+
+    def _inverse(self, positions: Array) -> Array:
+        """Newton's method from the pixel whose position is nearest."""
+        from scipy.spatial import cKDTree  # slow to load
+
+        found = np.full((len(positions), 2), np.nan)
+        (valid,) = np.nonzero(np.isfinite(positions).all(axis=1))
+        tree = cKDTree(self.positions[self._is_set])
+        start = (np.argwhere(self._is_set)[:, ::-1] + 0.5)[tree.query(positions[valid])[1]]
+        found[valid] = plane_inverse(self._function, self._jacobian, positions[valid], start)
+        found[~self._is_known(found)] = np.nan
+        return found
+
+    def _function(self, pixels: Array) -> Array:
+        return np.stack([spline.ev(pixels[:, 1], pixels[:, 0]) for spline in self._splines], axis=1)
+
+    def _jacobian(self, pixels: Array) -> Array:
+        y, x = pixels[:, 1], pixels[:, 0]
+        return np.stack([np.stack([s.ev(y, x, dy=1), s.ev(y, x, dx=1)], axis=1) for s in self._splines], axis=1)
+
+    def _is_known(self, pixels: Array) -> Booleans:
+        """True in the map, where the positions of all four pixels around are set."""
+        height, width = self._is_set.shape
+        with np.errstate(invalid="ignore"):
+            inside: Booleans = np.logical_and.reduce((pixels >= 0) & (pixels <= [width, height]), axis=1)
+        cell = np.floor(np.where(inside[:, None], pixels, 0.5) - 0.5).astype(int)
+        for x in (0, 1):
+            for y in (0, 1):
+                column, row = np.clip(cell[:, 0] + x, 0, width - 1), np.clip(cell[:, 1] + y, 0, height - 1)
+                inside &= self._is_set[row, column]
+        return inside
