@@ -54,6 +54,7 @@ from typing_extensions import CapsuleType, Self, TypeVar, Unpack
 from .derivatives import Gradient, Variable
 from .image import Image
 from .raw_image import RawImage
+from .vision.lens_calibration import LensCalibration
 
 # Arrays of numpy, except for rays in a GPU's memory.
 _Doubles = TypeVar("_Doubles", default=NDArray[np.float64])

@@ -169,6 +169,7 @@ for _type, _name, _package, _function in (
     (Lens, "draw", "drawing", "draw"),
     (Lens, "_repr_png_", "drawing.lens_drawings", "lens_png"),
     (Lens, "gradient", "derivatives", "gradient"),
+    (Lens, "calibration", "vision.lens_calibration", "calibration"),
     (PSF, "_repr_png_", "analysis.point_spread", "psf_png"),
 ):
     setattr(_type, _name, _ToolMethod(_type, _name, _package, _function))

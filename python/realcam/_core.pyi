@@ -14,6 +14,7 @@ from typing_extensions import CapsuleType, Self, TypeVar, Unpack
 from .derivatives import Gradient, Variable
 from .image import Image
 from .raw_image import RawImage
+from .vision.lens_calibration import LensCalibration
 
 # Arrays of numpy, except for rays in a GPU's memory.
 _Doubles = TypeVar("_Doubles", default=NDArray[np.float64])
@@ -811,6 +812,27 @@ class Lens:
         arms: number of radial scan lines about the centre of the light, 4 to 4096. nodes: number of Gauss nodes, 1 to 256, on
           each interval of a scan line on which light passes. The intervals' ends are found with real rays.
         Returns a RayBundle. Raises InputError if no light passes, or a glass is unknown at the wavelength.
+        """
+    def calibration(
+        self,
+        *,
+        film_mm: tuple[float, float] | None = None,
+        resolution: tuple[int, int] | None = None,
+        focus_m: float | None = None,
+        f_number: float | None = None,
+        model: str | None = None,
+        distance_m: float | None = None,
+        through: str = "light",
+    ) -> LensCalibration:
+        """
+        Returns the calibration that a camera with this lens would have: a camera model fitted to the lens's rays.
+
+        film_mm: (width, height), and resolution: (columns, rows); None: see Film.for_lens. focus_m: distance of the plane
+        in focus from the film, and f_number: as for Lens.with_rings; None: as the lens is set. model: see
+        rc.fit_camera_model; None: "opencv5" if it fits to 0.05 pixels RMS, and otherwise the better one of it and
+        "fisheye". distance_m, through: see rc.fit_camera_model.
+        The result can be saved in all formats of docs/calibration.md. Its rms_px and max_px say how well the model fits.
+        Raises InputError.
         """
     def draw(
         self,

@@ -6,14 +6,15 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
 from .._core import Camera, Film, InputError, Lens
+from ..calibration.arrays import Array
+from ..calibration.formats.colmap import camera_text
+from ..calibration.formats.colmap_images import HEADS, image_text, pose_text, text_content
+from ..calibration.transforms import turned
 from ..files import make_folder, write_whole
 from .conventions import Pose, relative_pose
-from .fit import CameraModelFit, fit_camera_model
-from .models import distortion_coefficients, model_named
+from .fit import fit_camera_model
+from .models import model_named
 
 NAMES = {
     "pinhole": "PINHOLE",
@@ -97,22 +98,20 @@ class _Fits:
         """Returns the line of a camera without its id; fits the camera model if no equal camera has been fitted."""
         key = _key_of(camera)
         if key not in self.lines:
-            self.lines[key] = _camera_line(fit_camera_model(camera, self._model))
+            self.lines[key] = camera_text(fit_camera_model(camera, self._model).calibration, NAMES[self._model])
         return self.lines[key]
 
 
 def _image_line(number: int, pose: Pose, camera: int, name: str) -> str:
-    if not name or any(c.isspace() for c in name):
-        raise InputError(f"names in COLMAP's text files must not be empty or contain spaces; one is {name!r:.60}")
-    return f"{number} {_pose_text(pose)} {camera} {name}\n"  # followed by an empty line for POINTS2D
+    return image_text(number, _transform(pose), camera, name)
 
 
 def _pose_text(pose: Pose) -> str:
-    from scipy.spatial.transform import Rotation  # slow to load
+    return pose_text(_transform(pose))
 
-    rotation, translation = pose
-    x, y, z, w = Rotation.from_matrix(rotation).as_quat()
-    return _text(np.array([w, x, y, z, *translation]))
+
+def _transform(pose: Pose) -> Array:
+    return turned(*pose)
 
 
 def _write(
@@ -122,25 +121,11 @@ def _write(
     others: Mapping[str, tuple[str, list[str]]],
 ) -> None:
     files = {
-        "cameras.txt": ("CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]", cameras),
-        "images.txt": ("IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME; then a line of POINTS2D", images),
-        "points3D.txt": ("POINT3D_ID X Y Z R G B ERROR TRACK[]", []),
+        "cameras.txt": (HEADS["cameras.txt"], cameras),
+        "images.txt": (HEADS["images.txt"], images),
+        "points3D.txt": (HEADS["points3D.txt"], []),
         **others,
     }
     make_folder(Path(folder))
     for file, (head, lines) in files.items():
-        write_whole(Path(folder, file), "".join(f"{line}\n" for line in [f"# {head}", *lines]).encode())
-
-
-def _camera_line(fit: CameraModelFit) -> str:
-    K = fit.camera_matrix
-    coefficients = distortion_coefficients(model_named(fit.model), fit.coefficients)
-    if NAMES[fit.model] == "FULL_OPENCV":
-        coefficients += [0.0] * (8 - len(coefficients))
-    columns, rows = fit.camera.film.resolution
-    parameters = _text(np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *coefficients]))
-    return f"{NAMES[fit.model]} {columns} {rows} {parameters}"
-
-
-def _text(values: NDArray[np.float64]) -> str:
-    return " ".join(f"{value:.15g}" for value in values)
+        write_whole(Path(folder, file), text_content(head, lines))

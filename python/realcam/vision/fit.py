@@ -9,9 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import Camera, InputError
+from ..calibration import Calibration
+from ..calibration.models.central import CentralModel
+from ..calibration.models.distortion import BrownConrady
+from ..calibration.models.opencv_models import pinhole_model
+from ..calibration.models.projections import Equidistant
+from ..calibration.models.radial import RationalRadius
 from ..notebook import table_html
 from . import conventions
-from .models import RadialModel, distortion_coefficients, model_named
+from .models import MODELS, RadialModel, distortion_coefficients, model_named
 from .regularised import condition_of, nearest_coefficients
 
 Array = NDArray[np.float64]
@@ -22,6 +28,8 @@ GRID = 49  # sample points along the longer side of the film, including its edge
 MIN_LIGHT = 0.1
 # Improvement of the held-out RMS that justifies more coefficients; no calibration resolves less.
 SIGNIFICANT_PX = 0.01
+# Powers of the angle, relative to the first, that models of the angle have.
+ANGLE_POWERS = {name: model.numerator for name, model in MODELS.items() if not model.by_tangent}
 SIMPLER = ("pinhole", "opencv4", "opencv5")  # models with fewer coefficients than opencv8
 
 
@@ -131,6 +139,33 @@ class CameraModelFit:
 
     def _residuals_of(self, points: Array, pixels: Array) -> Array:
         return projected(model_named(self.model), self.camera_matrix, self.coefficients, points) - pixels
+
+    @property
+    def calibration(self) -> Calibration:
+        """The fitted model as a rc.Calibration, which all formats of calibrations are saved from."""
+        film, k = self.camera.film, [float(value) for value in self.coefficients]
+        if self.model in ANGLE_POWERS:
+            sees_behind = self.largest_fitted_angle_deg >= 90
+            top = dict(zip(ANGLE_POWERS[self.model], k, strict=True))
+            radius = RationalRadius((1.0, *(top.get(power, 0.0) for power in range(1, max(top) + 1))))
+            projection = Equidistant(np.pi if sees_behind or self.model == "f_theta" else np.pi / 2)
+            model = CentralModel(projection, BrownConrady(radius), self.camera_matrix)
+        else:
+            D = distortion_coefficients(model_named(self.model), self.coefficients)
+            model = pinhole_model(self.camera_matrix, D)
+        return Calibration(
+            model,
+            film.resolution,
+            self.model,
+            name=self.camera.lens.name,
+            film_mm=(film.width_mm, film.height_mm),
+        )
+
+    @property
+    def largest_fitted_angle_deg(self) -> float:
+        """Largest angle to the axis of the fitted points."""
+        rays = self.camera.ray(self.pixels, through=self.through)[1] @ self.camera.world_to_camera[0].T
+        return float(np.degrees(_angles(rays).max()))
 
     def opencv(self) -> tuple[Array, Array]:
         """Returns (K, coefficients) in OpenCV's convention, in which the centre of the first pixel is (0, 0).

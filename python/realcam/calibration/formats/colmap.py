@@ -16,7 +16,7 @@ from ..files.output import numbers
 from ..models.central import CentralModel, camera_matrix
 from ..models.terms import terms_of
 from ..stated_camera import StatedCamera
-from .colmap_images import images_content, poses_beside
+from .colmap_images import HEADS, images_content, poses_beside, text_content
 from .colmap_models import BY_NAME, MODELS, Model, model_and_parameters
 from .format import Cameras, Format, Options, Saved, Writer
 
@@ -95,6 +95,18 @@ def _values(camera: StatedCamera) -> Mapping[str, Any]:
     return {"model": model.name, "parameters": parameters}
 
 
+def camera_text(camera: StatedCamera, model: str) -> str:
+    """Returns the line of a camera without its id, as a COLMAP model that has no fewer parameters than it needs."""
+    values = _values(camera)
+    # Models such as OPENCV are FULL_OPENCV without its last coefficients.
+    padding = [0.0] * (BY_NAME[model].parameters - len(values["parameters"]))
+    return _line({"model": model, "parameters": [*values["parameters"], *padding]}, camera)
+
+
+def _line(values: Mapping[str, Any], camera: StatedCamera) -> str:
+    return f"{values['model']} {camera.size[0]} {camera.size[1]} {numbers(values['parameters'])}"
+
+
 def camera_ids(cameras: Sequence[Saved]) -> list[int]:
     """Returns the names of the cameras as numbers if all are positive integers, and otherwise 1, 2, ..."""
     names = [saved.name for saved in cameras]
@@ -104,12 +116,9 @@ def camera_ids(cameras: Sequence[Saved]) -> list[int]:
 
 
 def _text_content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
-    lines = ["# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]"]
     ids = camera_ids(cameras)
-    for number, (_, values, camera) in zip(ids, cameras, strict=True):
-        size = f"{camera.size[0]} {camera.size[1]}"
-        lines.append(f"{number} {values['model']} {size} {numbers(values['parameters'])}")
-    return {path: "".join(f"{line}\n" for line in lines).encode(), **images_content(ids, cameras, path)}
+    lines = [f"{number} {_line(saved.values, saved.camera)}" for number, saved in zip(ids, cameras, strict=True)]
+    return {path: text_content(HEADS["cameras.txt"], lines), **images_content(ids, cameras, path)}
 
 
 def _binary_content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:

@@ -15,6 +15,7 @@ from ..transforms import inverse_of, quaternion, rigid
 from .format import Saved
 
 HEADS = {
+    "cameras.txt": "CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]",
     "images.txt": "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME; then a line of POINTS2D",
     "points3D.txt": "POINT3D_ID X Y Z R G B ERROR TRACK[]",
 }
@@ -62,28 +63,54 @@ def _binary_images(document: Document) -> Iterator[_Image]:
         document.fail(f"ends before its last image, at byte {len(content)}")
 
 
+def text_content(head: str, lines: Sequence[str]) -> bytes:
+    """Returns a text file: a comment and its lines."""
+    return "".join(f"{line}\n" for line in [f"# {head}", *lines]).encode()
+
+
+def pose_text(camera_from_world: Array) -> str:
+    """Returns QW QX QY QZ TX TY TZ."""
+    return numbers([*quaternion(camera_from_world), *camera_from_world[:3, 3].tolist()])
+
+
+def image_text(number: int, camera_from_world: Array, camera: int, name: str) -> str:
+    """Returns the lines of an image, the second of which has no points. Raises InputError for names with spaces."""
+    return f"{number} {pose_text(camera_from_world)} {camera} {_checked(name)}\n"
+
+
+def _checked(name: str) -> str:
+    if not name or any(c.isspace() or c == "\0" for c in name):
+        raise InputError(f"names in COLMAP's files must not be empty or contain spaces; one is {name!r:.60}")
+    return name
+
+
 def images_content(ids: Sequence[int], cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     """Returns the files of images and of points, which are empty, beside a file of cameras; none without poses.
 
     Raises InputError for names of pictures that the file cannot hold.
     """
     images = [
-        (number, name, [*quaternion(pose), *pose[:3, 3].tolist()])
-        for number, saved in zip(ids, cameras, strict=True)
-        for name, pose in ((key, inverse_of(pose)) for key, pose in saved.camera.poses.items())
+        (i, inverse_of(pose), number, name)
+        for i, (number, name, pose) in enumerate(
+            (
+                (number, name, pose)
+                for number, saved in zip(ids, cameras, strict=True)
+                for name, pose in saved.camera.poses.items()
+            ),
+            start=1,
+        )
     ]
     if not images:
         return {}
-    for _, name, _ in images:
-        if not name or any(c.isspace() or c == "\0" for c in name):
-            raise InputError(f"names in COLMAP's files must not be empty or contain spaces; one is {name!r:.60}")
     if path.suffix.lower() == ".bin":
-        content = b"".join(
-            struct.pack("<I7dI", i, *pose, camera) + name.encode() + b"\0" + struct.pack("<Q", 0)
-            for i, (camera, name, pose) in enumerate(images, start=1)
-        )
+        content = b"".join(map(_binary_image, images))
         count = struct.pack("<Q", len(images))
         return {path.with_name("images.bin"): count + content, path.with_name("points3D.bin"): struct.pack("<Q", 0)}
-    lines = [f"{i} {numbers(pose)} {camera} {name}\n\n" for i, (camera, name, pose) in enumerate(images, start=1)]
-    bodies = {"images.txt": "".join(lines), "points3D.txt": ""}
-    return {path.with_name(file): f"# {head}\n{bodies[file]}".encode() for file, head in HEADS.items()}
+    bodies = {"images.txt": [image_text(*image) for image in images], "points3D.txt": []}
+    return {path.with_name(file): text_content(HEADS[file], lines) for file, lines in bodies.items()}
+
+
+def _binary_image(image: tuple[int, Array, int, str]) -> bytes:
+    number, pose, camera, name = image
+    values = [*quaternion(pose), *pose[:3, 3].tolist()]
+    return struct.pack("<I7dI", number, *values, camera) + _checked(name).encode() + b"\0" + struct.pack("<Q", 0)

@@ -22,6 +22,7 @@ from ..files.exr import exr_attribute, exr_content, exr_values
 from ..files.output import numbers
 from ..maps import redistorting_map, undistorting_map
 from ..models.map_model import MapModel
+from ..models.terms import Inexpressible, sees_behind
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, Saved, Writer, sole
 
@@ -39,6 +40,8 @@ class _Kind(NamedTuple):
 
 
 def _map(camera: StatedCamera, is_redistorting: bool) -> Array:
+    if sees_behind(camera):
+        raise Inexpressible("ends at 90 degrees off the axis, and the picture shows more")
     K = camera.camera_model.camera_matrix
     return redistorting_map(camera, K) if is_redistorting else undistorting_map(camera, K, camera.size)
 

@@ -108,7 +108,7 @@ def terms_of(camera: StatedCamera) -> Terms:
         is_sequential=distortion.is_sequential and not distortion.is_radial,
         tilt=model.tilt,
         size=camera.size,
-        sees_behind=_sees_behind(model, camera.size),
+        sees_behind=sees_behind(camera),
     )
 
 
@@ -127,14 +127,14 @@ def _normalised(coefficients: Sequence[float]) -> tuple[float, ...]:
     return tuple(value / first for value in others) if first != 1 else tuple(others)
 
 
-def _sees_behind(model: CentralModel, size: tuple[int, int]) -> bool:
-    """True if a point of the picture's edge has a ray with z <= 0."""
-    if model.projection.largest_angle <= np.pi / 2:
+def sees_behind(camera: StatedCamera) -> bool:
+    """True if a point of the picture's edge has a ray with z <= 0, or none although the model reaches as far."""
+    if camera.camera_model.largest_angle <= np.pi / 2:
         return False
     side = np.linspace(0, 1, 33)
     ends = np.zeros_like(side)
     edge = np.concatenate([np.stack(pair, axis=1) for pair in ((side, ends), (side, ends + 1), (ends, side))])
-    edge = np.concatenate([edge, np.stack([ends + 1, side], axis=1)]) * np.array(size, dtype=float)
-    rays, _ = model.ray(edge)
+    edge = np.concatenate([edge, np.stack([ends + 1, side], axis=1)]) * np.array(camera.size, dtype=float)
+    rays, _ = camera.camera_model.ray(edge)
     # A pixel without a ray may lie beyond the directions that the model sees, behind 90 degrees.
     return bool((~(rays[:, 2] > 0)).any())
