@@ -72,7 +72,7 @@ class ImageSimulation(ShortText):
 
     def developed(self) -> NDArray[np.uint8]:
         """(H, W, 3) uint8 sRGB: 1 becomes 255, and more than 1 is clipped."""
-        return _srgb_codes(self.pixels)
+        return srgb_codes(self.pixels)
 
     def psf_sheet(self, height: int) -> NDArray[np.uint8]:
         """(height, W, 3) uint8 sRGB: the grid of point spread functions, each normalised to its own peak."""
@@ -88,7 +88,7 @@ class ImageSimulation(ShortText):
             ((np.arange(count) + 0.5) * sheet_count / count).astype(int)
             for count, sheet_count in zip((height, width), sheet.shape[:2], strict=True)
         ]
-        return _srgb_codes(sheet[np.ix_(*nearest)])
+        return srgb_codes(sheet[np.ix_(*nearest)])
 
     def save(self, path: str | os.PathLike[str], *, psfs: bool = False) -> None:
         """Writes the developed picture as .png, .jpg, .tif or .webp.
@@ -682,7 +682,7 @@ def _linear(picture: ArrayLike | str | os.PathLike[str]) -> Floats:
     return array.astype(np.float32)
 
 
-def _srgb_codes(linear: Floats) -> NDArray[np.uint8]:
+def srgb_codes(linear: Floats) -> NDArray[np.uint8]:
     """8-bit sRGB of linear values. develop() renders 10 / ISO lux seconds as middle grey, which is 18% of white."""
     codes: NDArray[np.uint8] = develop(linear * np.float32(10 / 100 / 0.18), 100, "linear")
     return codes

@@ -10,7 +10,7 @@ import typer
 
 from .. import __version__
 from .._core import LensFileError, RealcamError, _record_inputs, one_line
-from . import bench, compare, cost, dataset, demo, job, lens, sensor, view
+from . import bench, calibration, compare, cost, dataset, demo, job, lens, sensor, view
 from .commands_in_cpp import add_command_in_cpp
 from .help_texts import finish
 from .options import advice_on
@@ -27,6 +27,7 @@ add_command_in_cpp(app, "plan")
 app.add_typer(lens.app, name="lens")
 add_command_in_cpp(app, "devices")
 app.add_typer(sensor.app, name="sensor")
+app.add_typer(calibration.app, name="calibration")
 app.command("expose")(sensor.expose)
 app.command("demo")(demo.demo)
 app.command("bench")(bench.bench)

@@ -43,6 +43,12 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "sensor list": ("realcam sensor list",),
     "sensor info": ("realcam sensor info sony-imx071-color",),
+    "calibration show": ("realcam calibration show camchain.yaml",),
+    "calibration convert": (
+        "realcam calibration convert camera_info.yaml cameras.txt",
+        "realcam calibration convert camchain.yaml left.yml --camera cam0 --to opencv",
+    ),
+    "calibration undistort": ("realcam calibration undistort camera_info.yaml picture.png -o flat.png",),
     "expose": (
         "realcam render scene.glb -o film.exr",
         "realcam expose film.exr --sensor sony-imx071-color --iso 800 -o raw.dng -o raw.png",

@@ -93,9 +93,12 @@ class BrownConrady:
     def ideal(self, points: Array, largest: float) -> Array:
         if self.is_radial:
             return self._radially_ideal(points, largest)
-        limit = min(largest, self._folds(largest).last)
-        start = self._radially_ideal(points, min(largest, self.radius.first_fold))
-        found = plane_inverse(self.distorted, self.jacobian, points, start)
+        folds = self._folds(largest)
+        limit = min(largest, folds.last)
+        (reached,) = np.nonzero(folds.may_reach(points))
+        start = self._radially_ideal(points[reached], min(largest, self.radius.first_fold))
+        found = np.full(points.shape, np.nan)
+        found[reached] = plane_inverse(self.distorted, self.jacobian, points[reached], start)
         inside = np.hypot(found[:, 0], found[:, 1]) < limit
         found[~inside] = np.nan
         found[inside] = np.where(self.is_before_fold(found[inside], largest)[:, None], found[inside], np.nan)

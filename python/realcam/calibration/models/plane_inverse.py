@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import Array
 
 Map = Callable[[Array], Array]
+ROUNDING = 1e-14  # relative residual below which a step that does not reduce it is due to rounding
 STEPS = 32  # of the continuation from the centre, for points at which Newton's method alone does not converge
 
 
@@ -30,7 +31,10 @@ def plane_inverse(function: Map, jacobian: Map, values: Array, start: Array) -> 
 
 
 def _newton(function: Map, jacobian: Map, values: Array, start: Array) -> Array:
-    """Damped Newton iteration: steps that do not reduce the residual are halved."""
+    """Damped Newton iteration: steps that do not reduce the residual are shortened.
+
+    It ends at a point when the residual is small and no longer falls, as rounding allows no smaller one.
+    """
     points: Array = start.copy()
     residual = values - function(points)
     size = np.hypot(*residual.T)
@@ -44,6 +48,7 @@ def _newton(function: Map, jacobian: Map, values: Array, start: Array) -> Array:
         length = np.hypot(*error.T)
         better = length < size[active]
         damping[active] = np.where(better, np.minimum(1, 2 * damping[active]), damping[active] / 4)
+        damping[active[~better & (size[active] < ROUNDING * (1 + np.hypot(*values[active].T)))]] = 0
         taken = active[better]
         points[taken], residual[taken], size[taken] = candidate[better], error[better], length[better]
     points[~(size <= 1e-12 * (1 + np.hypot(*values.T)))] = np.nan

@@ -111,15 +111,21 @@ def monotone_inverse(
         cell = np.clip(np.searchsorted(function(knots), values, side="right") - 1, 0, len(knots) - 1)
         low, high = knots[cell], np.append(knots[1:], upper)[cell]
         s = 0.5 * (low + high)
+        # Values beyond the end of the function would be halved towards it to the last bit.
+        end = float(function(np.array(upper)))
+        is_beyond = values > end * (1 + 1e-9) + 1e-9 if end > float(function(knots[-1])) else values > np.inf
+        (active,) = np.nonzero(np.isfinite(values) & (values >= 0) & ~is_beyond)
         for _ in range(200):
-            error = function(s) - values
-            low, high = np.where(error <= 0, s, low), np.where(error > 0, s, high)
-            step = s - error / slope(s)
-            following = np.where((step >= low) & (step <= high), step, 0.5 * (low + high))
-            has_converged = np.abs(following - s) <= 1e-15 * np.abs(s)
-            s = following
-            if (has_converged | ~np.isfinite(values)).all():
+            if not len(active):
                 break
+            at = s[active]
+            error = function(at) - values[active]
+            below = np.where(error <= 0, at, low[active])
+            above = np.where(error > 0, at, high[active])
+            step = at - error / slope(at)
+            following = np.where((step >= below) & (step <= above), step, 0.5 * (below + above))
+            low[active], high[active], s[active] = below, above, following
+            active = active[~(np.abs(following - at) <= 1e-15 * np.abs(at))]
         is_reached = np.abs(function(s) - values) <= 1e-12 * (1 + np.abs(values))
         return np.where(is_reached & (values >= 0), s, np.nan)
 

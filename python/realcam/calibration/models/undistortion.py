@@ -58,8 +58,11 @@ class Undistortion:
         return found
 
     def _distorted(self, points: Array) -> Array:
-        start = points * self.ratio
-        return plane_inverse(self.function, self._jacobian, start, start)
+        values = points * self.ratio
+        (reached,) = np.nonzero(self._folds.may_reach(values))
+        found = np.full(points.shape, np.nan)
+        found[reached] = plane_inverse(self.function, self._jacobian, values[reached], values[reached])
+        return found
 
     def _jacobian(self, points: Array) -> Array:
         columns = [self.function(points + 1j * STEP * axis).imag / STEP for axis in np.eye(2)]

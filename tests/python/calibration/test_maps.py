@@ -1,0 +1,89 @@
+"""ST maps and tables of cv2.remap: their convention, both directions, and OpenCV where it is installed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import realcam as rc
+
+pytestmark = pytest.mark.picture_files
+SIZE = (96, 64)
+K = np.array([[70.0, 0, 48.3], [0, 71.0, 31.2], [0, 0, 1]])
+CAMERA = rc.Calibration.opencv(K, [-0.2, 0.05, 0.001, -0.0005], SIZE)
+
+
+def channels(path: Path) -> np.ndarray:
+    import OpenImageIO as oiio
+
+    return np.asarray(oiio.ImageInput.open(str(path)).read_image())
+
+
+def test_an_st_map_reads_s_rightwards_and_t_upwards(tmp_path: Path) -> None:
+    CAMERA.save(tmp_path / "stmap.exr")
+    found = channels(tmp_path / "stmap.exr")
+    assert found.shape == (64, 96, 3)
+    matrix = CAMERA.camera_matrix
+    ray = [(10.5 - matrix[0, 2]) / matrix[0, 0], (7.5 - matrix[1, 2]) / matrix[1, 1], 1]
+    x, y = CAMERA.project([ray])[0][0]
+    # A float32 of about 1 has steps of 6e-8.
+    assert found[7, 10] == pytest.approx([x / 96, 1 - y / 64, 0], abs=1e-7)
+
+
+@pytest.mark.parametrize("name", ["stmap.exr", "redistort.exr", "remap.npz"])
+def test_maps_are_cameras(tmp_path: Path, name: str) -> None:
+    """Cubic splines over pixels, whose error is the fourth difference of the distortion: some 1e-4 pixels here."""
+    CAMERA.save(tmp_path / name)
+    found = rc.Calibration.load(tmp_path / name)
+    pixels = np.random.default_rng(2).random((200, 2)) * [80, 50] + [8, 7]
+    directions = CAMERA.ray(pixels)[0]
+    assert np.abs(found.project(directions)[0] - pixels).max() < 1e-3
+    assert np.abs(found.ray(pixels)[0] - directions).max() < 1e-5
+    found.save(tmp_path / f"again{name[-4:]}", found.format)
+    again = rc.Calibration.load(tmp_path / f"again{name[-4:]}", format=found.format)
+    assert np.array_equal(again.camera_model.positions, found.camera_model.positions, equal_nan=True)
+
+
+def test_a_map_of_another_program_needs_its_pinhole_camera(tmp_path: Path) -> None:
+    x, y = np.meshgrid(np.arange(96.0), np.arange(64.0))
+    np.savez(tmp_path / "remap.npz", map_x=x.astype(np.float32), map_y=y.astype(np.float32))
+    with pytest.raises(rc.CalibrationFileError, match="expected camera_matrix"):
+        rc.Calibration.load(tmp_path / "remap.npz")
+    matrix = [[70, 0, 48], [0, 70, 32], [0, 0, 1]]
+    found = rc.Calibration.load(tmp_path / "remap.npz", camera_matrix=matrix)
+    assert found.project([[0.1, -0.2, 1]])[0][0] == pytest.approx([55, 18], abs=1e-9)
+    np.savez(tmp_path / "bad.npz", map_x=np.array([object()], dtype=object))
+    with pytest.raises(rc.CalibrationFileError, match=r"is no .npz of numbers"):
+        rc.Calibration.load(tmp_path / "bad.npz")
+
+
+def test_redistort_inverts_undistort() -> None:
+    rows, columns = np.mgrid[0:64, 0:96] + 0.5
+    image = np.sin(columns / 9) + np.cos(rows / 7)
+    flat = CAMERA.undistort(image, interpolation="bicubic")
+    back = CAMERA.redistort(np.nan_to_num(flat), interpolation="bicubic")
+    inside = np.s_[16:48, 24:72]  # away from the edges, beside which the flat picture shows nothing
+    assert np.abs(back - image)[inside].max() < 1e-3
+
+
+def test_opencv_remaps_by_the_tables(tmp_path: Path) -> None:
+    cv2 = pytest.importorskip("cv2")
+    CAMERA.save(tmp_path / "remap.npz")
+    tables = np.load(tmp_path / "remap.npz")
+    x, y = cv2.initUndistortRectifyMap(K, np.array([-0.2, 0.05, 0.001, -0.0005]), None, K, SIZE, cv2.CV_32FC1)
+    assert np.nanmax(np.abs(tables["undistort_map_x"] - x)) < 1e-4
+    assert np.nanmax(np.abs(tables["undistort_map_y"] - y)) < 1e-4
+    rows, columns = np.mgrid[0:64, 0:96] + 0.5
+    image = np.sin(columns / 9) + np.cos(rows / 7)
+    expected = cv2.remap(image, tables["undistort_map_x"], tables["undistort_map_y"], cv2.INTER_LINEAR)
+    flat = CAMERA.undistort(image)
+    inside = np.s_[4:60, 4:92]
+    # cv2.remap rounds positions to 1/32 of a pixel, over which the picture changes by at most 0.004.
+    assert np.abs(flat - expected)[inside].max() < 0.005
+
+
+def test_what_lies_behind_has_no_map(tmp_path: Path) -> None:
+    camera = rc.Lens.load("fisheye-6mm-220deg").calibration(resolution=(60, 60), model="fisheye")
+    with pytest.raises(rc.InputError, match="ends at 90 degrees"):
+        camera.save(tmp_path / "stmap.exr")
