@@ -133,7 +133,8 @@ def test_an_unchanged_camera_keeps_its_numbers_to_the_last_bit(tmp_path: Path, n
     again = rc.Calibration.load(tmp_path / "again" / name)
     assert first.format == again.format
     assert first.file_values == again.file_values
-    assert np.array_equal(first.project(rays(first))[0], again.project(rays(first))[0])
+    pixels = first.project(rays(first))[0], again.project(rays(first))[0]
+    assert np.array_equal(*pixels, equal_nan=True)  # a corner may have no ray
     for key, transform in first.extrinsics.items():
         assert np.array_equal(transform, again.extrinsics[key])
 
@@ -239,7 +240,9 @@ def test_a_lens_becomes_a_calibration(tmp_path: Path) -> None:
     assert found.film_mm == (36, 24)
     assert 0 < found.rms_px <= found.max_px < 0.05
     points = rays(found)
-    pixels = found.fit.camera.project(points @ found.fit.camera.world_to_camera[0] * found.fit.distance_m)[0]
+    camera = found.fit.camera
+    rotation, translation = camera.world_to_camera
+    pixels = camera.project((points * found.fit.distance_m - translation) @ rotation)
     assert np.nanmax(np.linalg.norm(found.project(points)[0] - pixels, axis=1)) < 0.05
     assert found.resized((150, 100)).max_px == pytest.approx(found.max_px / 2)
     found.save(tmp_path / "camera_info.yaml")

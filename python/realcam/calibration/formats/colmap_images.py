@@ -74,7 +74,7 @@ def pose_text(camera_from_world: Array) -> str:
 
 
 def image_text(number: int, camera_from_world: Array, camera: int, name: str) -> str:
-    """Returns the lines of an image, the second of which has no points. Raises InputError for names with spaces."""
+    """Returns the line of an image and an empty line of its points. Raises InputError for names with spaces."""
     return f"{number} {pose_text(camera_from_world)} {camera} {_checked(name)}\n"
 
 

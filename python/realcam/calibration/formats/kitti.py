@@ -50,7 +50,7 @@ def _raw(entries: Entries, number: str) -> StatedCamera:
         format="kitti",
         pixel_origin=0.0,
         extrinsics=extrinsics,
-        file_values={"K": matrix, "D": D},
+        file_values={"K": matrix.ravel().tolist(), "D": D},
     )
 
 
@@ -70,7 +70,7 @@ def _rectified(entries: Entries, key: str, options: Options) -> StatedCamera:
         format="kitti",
         pixel_origin=0.0,
         extrinsics={"camera_from_rectified_camera0": turned(np.eye(3), np.linalg.solve(K, P[:, 3]))},
-        file_values={"P": P},
+        file_values={"P": P.ravel().tolist()},
     )
 
 
