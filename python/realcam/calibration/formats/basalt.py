@@ -172,4 +172,4 @@ def _pose(transform: Array) -> dict[str, float]:
     return {"px": px, "py": py, "pz": pz, "qx": x, "qy": y, "qz": z, "qw": w}
 
 
-FORMAT = Format("basalt", _matches, cameras, Writer(("calibration.json", "*.json"), _values, _content))
+FORMAT: Format = Format("basalt", _matches, cameras, Writer(("calibration.json", "*.json"), _values, _content))

@@ -118,7 +118,7 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     return {path: yaml_content(cameras[0].values, "%YAML:1.0\n---\n")}
 
 
-FORMAT = Format(
+FORMAT: Format = Format(
     "camodocal",
     lambda d: "model_type" in d.mapping(),
     cameras,

@@ -55,7 +55,7 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     return {path: json_content(cameras[0].values)}
 
 
-FORMAT = Format(
+FORMAT: Format = Format(
     "carla",
     lambda d: "image_size_x" in d.mapping() and "fov" in d.mapping(),
     lambda document, options: sole("camera", lambda: _camera(Entries(document, document.mapping()))),

@@ -130,5 +130,7 @@ def _binary_content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes
     return {path: b"".join(parts), **images_content(ids, cameras, path)}
 
 
-TEXT = Format("colmap", _is_text, text_cameras, Writer(("cameras.txt", "*.txt"), _values, _text_content))
-BINARY = Format("colmap-binary", _is_binary, binary_cameras, Writer(("cameras.bin", "*.bin"), _values, _binary_content))
+TEXT: Format = Format("colmap", _is_text, text_cameras, Writer(("cameras.txt", "*.txt"), _values, _text_content))
+BINARY: Format = Format(
+    "colmap-binary", _is_binary, binary_cameras, Writer(("cameras.bin", "*.bin"), _values, _binary_content)
+)

@@ -160,7 +160,7 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     return {path: yaml_content(chain)}
 
 
-FORMAT = Format(
+FORMAT: Format = Format(
     "kalibr",
     lambda d: any("intrinsics" in camera for camera in _chain(d).values()),
     cameras,

@@ -126,4 +126,4 @@ def _poses(cameras: Sequence[StatedCamera]) -> list[Array]:
     return [pose @ back for pose in found]
 
 
-FORMAT = Format("kitti", _matches, cameras, Writer(("calib*.txt", "*.txt"), _values, _content))
+FORMAT: Format = Format("kitti", _matches, cameras, Writer(("calib*.txt", "*.txt"), _values, _content))

@@ -110,7 +110,7 @@ def _stated(camera: StatedCamera) -> Mapping[str, Any]:
     }
     if any(tangential):
         model |= {f"TangentialDistortParam{i}": value for i, value in enumerate(tangential, start=1)}
-    profile = {"Author": "realcam", "CameraRawProfile": "True", "Lens": camera.name or "lens"}
+    profile: dict[str, Any] = {"Author": "realcam", "CameraRawProfile": "True", "Lens": camera.name or "lens"}
     profile |= {"ImageWidth": width, "ImageLength": height}
     return {"kind": "FisheyeModel" if is_fisheye else "PerspectiveModel", "profile": profile, "model": model}
 
@@ -142,4 +142,4 @@ xmlns:stCamera="http://ns.adobe.com/photoshop/1.0/camera-profile">
 </x:xmpmeta>
 """
 
-FORMAT = Format("lcp", _matches, cameras, Writer(("*.lcp",), _stated, _content))
+FORMAT: Format = Format("lcp", _matches, cameras, Writer(("*.lcp",), _stated, _content))

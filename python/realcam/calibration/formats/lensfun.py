@@ -161,7 +161,7 @@ def _is_database(root: ET.Element) -> bool:
     return root.tag == "lensdatabase"
 
 
-FORMAT = Format(
+FORMAT: Format = Format(
     "lensfun",
     lambda d: d.syntax == "xml" and _is_database(d.xml),
     cameras,

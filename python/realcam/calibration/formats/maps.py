@@ -64,8 +64,8 @@ def _st_camera(kind: _Kind, document: Document, options: Options) -> StatedCamer
     is_hidden = (values == HIDDEN).all(axis=2)
     positions = np.stack([values[:, :, 0] * width, (1 - values[:, :, 1]) * height], axis=2)
     positions[is_hidden] = np.nan
-    stated = exr_attribute(document.path, MATRIX_KEY)
-    K = Entries(document, {MATRIX_KEY: stated}).matrix(MATRIX_KEY, 3, 3) if stated else None
+    text = exr_attribute(document.path, MATRIX_KEY)
+    K = Entries(document, {MATRIX_KEY: text}).matrix(MATRIX_KEY, 3, 3) if text else None
     K = K if options.camera_matrix is None else options.camera_matrix
     model = _model(document, positions, kind.is_redistorting, K)
     stated = {"map": values, "camera_matrix": model.pinhole_matrix}
@@ -149,9 +149,9 @@ def _remap_content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]
     return {path: file.getvalue()}
 
 
-UNDISTORT = _st_format(_Kind("stmap", False), ("*stmap*.exr", "*.exr"))
-REDISTORT = _st_format(_Kind("stmap-redistort", True), ("*redistort*.exr",))
-REMAP = Format(
+UNDISTORT: Format = _st_format(_Kind("stmap", False), ("*stmap*.exr", "*.exr"))
+REDISTORT: Format = _st_format(_Kind("stmap-redistort", True), ("*redistort*.exr",))
+REMAP: Format = Format(
     "remap",
     lambda d: d.suffix == ".npz",
     lambda document, options: sole("camera", lambda: _remap_camera(document, options)),

@@ -180,7 +180,7 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     return {path: json_content({**pair, "PoseCamera2": rotation, "WorldUnits": "m"})}
 
 
-FORMAT = Format(
+FORMAT: Format = Format(
     "matlab",
     lambda d: any(key in d.mapping() for key in (*KEYS, *STEREO)),
     cameras,

@@ -124,7 +124,8 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
 
 def _document(cameras: Sequence[Saved]) -> str:
     """Returns a document like that of the export of cameras."""
-    sensors, pictures = [], []
+    sensors: list[str] = []
+    pictures: list[str] = []
     for index, (name, values, camera) in enumerate(cameras):
         size = xml_attributes({"width": camera.size[0], "height": camera.size[1]})
         kind = values["projection"]
@@ -145,6 +146,6 @@ def _document(cameras: Sequence[Saved]) -> str:
     )
 
 
-FORMAT = Format(
+FORMAT: Format = Format(
     "metashape", _matches, cameras, Writer(("*cameras*.xml", "*metashape*.xml", "*.xml"), _values, _content)
 )

@@ -64,7 +64,7 @@ def cameras(document: Document, options: Options) -> Cameras:
     return sole("camera", lambda: _camera(Entries(document, document.mapping())))
 
 
-FORMAT = Format(
+FORMAT: Format = Format(
     "ncore",
     lambda d: "reference_poly" in d.mapping(),
     cameras,

@@ -135,4 +135,4 @@ def _frames(camera: StatedCamera) -> list[dict[str, Any]]:
     return [{"file_path": name, "transform_matrix": pose @ AXES} for name, pose in camera.poses.items()]
 
 
-FORMAT = Format("nerfstudio", _matches, cameras, Writer(("transforms*.json", "*.json"), _values, _content))
+FORMAT: Format = Format("nerfstudio", _matches, cameras, Writer(("transforms*.json", "*.json"), _values, _content))

@@ -96,7 +96,7 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     return {path: json_content(sensors)}
 
 
-FORMAT = Format(
+FORMAT: Format = Format(
     "nuscenes",
     lambda d: bool(_sensors(d)),
     cameras,

@@ -125,4 +125,6 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     return {path: "".join(lines).encode()}
 
 
-FORMAT = Format("ocam", _matches, cameras, Writer(("calib_results*.txt", "*.txt"), _values, _content, is_single=True))
+FORMAT: Format = Format(
+    "ocam", _matches, cameras, Writer(("calib_results*.txt", "*.txt"), _values, _content, is_single=True)
+)

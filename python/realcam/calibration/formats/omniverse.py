@@ -210,7 +210,7 @@ def _value(key: str, value: Any) -> str:
     return f"({', '.join(words)})" if key in TYPES else words[0]
 
 
-FORMAT = Format(
+FORMAT: Format = Format(
     "omniverse",
     lambda d: d.syntax == "usda" and f"{PREFIX}model" in d.text,
     cameras,

@@ -85,4 +85,4 @@ def cameras(document: Document, options: Options) -> Cameras:
     return sole("camera", lambda: _camera(entries, _key(entries, MATRICES), _key(entries, COEFFICIENTS), options))
 
 
-FORMAT = Format("opencv", lambda d: any(key in _storage(d) for key in (*MATRICES, *STEREO)), cameras, WRITER)
+FORMAT: Format = Format("opencv", lambda d: any(key in _storage(d) for key in (*MATRICES, *STEREO)), cameras, WRITER)

@@ -103,4 +103,4 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     return {path: (_xml(entries) if path.suffix.lower() == ".xml" else _yaml(entries)).encode()}
 
 
-WRITER = Writer(("*.yml", "*.xml", "*.json"), _values, _content)
+WRITER: Writer = Writer(("*.yml", "*.xml", "*.json"), _values, _content)

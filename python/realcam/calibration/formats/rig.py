@@ -143,4 +143,4 @@ def _matches(document: Document) -> bool:
     return isinstance(rig, dict) and "sensors" in rig
 
 
-FORMAT = Format("rig", _matches, cameras, Writer(("*rig*.json", "*.json"), _values, _content))
+FORMAT: Format = Format("rig", _matches, cameras, Writer(("*rig*.json", "*.json"), _values, _content))

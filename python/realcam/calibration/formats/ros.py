@@ -117,4 +117,6 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     return {path: yaml_content(cameras[0].values)}
 
 
-FORMAT = Format("ros", _matches, cameras, Writer(("*camera_info*.yaml", "*.yaml"), _values, _content, is_single=True))
+FORMAT: Format = Format(
+    "ros", _matches, cameras, Writer(("*camera_info*.yaml", "*.yaml"), _values, _content, is_single=True)
+)

@@ -40,7 +40,8 @@ def lut_contents(camera: StatedCamera) -> tuple[bytes, bytes]:
 def _directions(camera: StatedCamera) -> Array:
     rays, _ = camera.camera_model.ray(pixel_centres(camera.size))
     rays[np.isnan(rays[:, 0])] = (0, 0, -1)  # the mark of texels without a ray
-    return rays.reshape(camera.size[1], camera.size[0], 3)
+    directions: Array = rays.reshape(camera.size[1], camera.size[0], 3)
+    return directions
 
 
 def _positions(camera: StatedCamera) -> Array:

@@ -158,7 +158,7 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     return {path: "".join(nodes).encode()}
 
 
-FORMAT = Format(
+FORMAT: Format = Format(
     "3de4",
     lambda d: d.syntax == "text" and bool(NODE.search(d.text)),
     cameras,
