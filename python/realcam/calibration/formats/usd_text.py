@@ -6,7 +6,7 @@ import re
 
 PRIM = re.compile(r'^\s*(?:def|over|class)\s+(\w*)\s*"([^"]*)"')
 ATTRIBUTE = re.compile(r"^\s*(?:custom\s+|uniform\s+)*([\w\[\]]+)\s+([\w:]+)\s*=\s*([^\n]*?)\s*$")
-TEXT: Format = re.compile(r'"([^"]*)"|\'([^\']*)\'|@([^@]*)@')
+TEXT = re.compile(r'"([^"]*)"|\'([^\']*)\'|@([^@]*)@')
 
 
 def camera_prims(text: str) -> dict[str, dict[str, object]]:
