@@ -258,3 +258,16 @@ def test_commands_show_and_convert(tmp_path: Path, capsys: pytest.CaptureFixture
     show(tmp_path / "camera_info.yaml")
     printed = capsys.readouterr().out
     assert "plumb_bob" in printed and "640 x 480 pixels" in printed
+
+
+def test_binary_usd_files_are_read(tmp_path: Path) -> None:
+    """Their attributes are of 32 bits, which move pixels by some 1e-5 of them."""
+    sdf = pytest.importorskip("pxr.Sdf")
+    CAMERAS["opencv8"].save(tmp_path / "a.usda")
+    assert sdf.Layer.FindOrOpen(str(tmp_path / "a.usda")).Export(str(tmp_path / "a.usdc"))
+    found = rc.Calibration.load(tmp_path / "a.usdc")
+    points = rays(found)
+    assert np.abs(found.project(points)[0] - CAMERAS["opencv8"].project(points)[0]).max() < 2e-4
+    (tmp_path / "bad.usdc").write_bytes(b"PXR-USDC" + bytes(200))
+    with pytest.raises(rc.CalibrationFileError, match="is a damaged USD file"):
+        rc.Calibration.load(tmp_path / "bad.usdc")

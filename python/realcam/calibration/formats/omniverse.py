@@ -23,6 +23,7 @@ from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, Saved, Writer
 from .ftheta import angle_limit, backward_model, ftheta_of, pixel_matrix, polynomial
 from .texture import lut_contents, lut_model
+from .usd_layer import BINARY, layer_prims
 from .usd_text import camera_prims
 
 PREFIX = "omni:lensdistortion:"
@@ -80,10 +81,18 @@ def _camera(document: Document, name: str, values: dict[str, object]) -> StatedC
     return StatedCamera(camera_model, size, model, name=name, format="omniverse", file_values={"model": model, **own})
 
 
+def _prims(document: Document) -> dict[str, dict[str, object]]:
+    return layer_prims(document) if document.content.startswith(BINARY) else camera_prims(document.text)
+
+
+def _matches(document: Document) -> bool:
+    return document.content.startswith(BINARY) or (document.syntax == "usda" and f"{PREFIX}model" in document.text)
+
+
 def cameras(document: Document, options: Options) -> Cameras:
     return {
         name: lambda name=name, values=values: _camera(document, name, values)  # type: ignore[misc]
-        for name, values in camera_prims(document.text).items()
+        for name, values in _prims(document).items()
         if f"{PREFIX}model" in values
     }
 
@@ -206,13 +215,13 @@ def _value(key: str, value: Any) -> str:
     if isinstance(value, str):
         words = value.replace(",", " ").split()
     else:
-        words = [number(v) for v in value] if isinstance(value, tuple) else [number(value)]
+        words = [number(v) for v in value] if isinstance(value, tuple | list) else [number(value)]
     return f"({', '.join(words)})" if key in TYPES else words[0]
 
 
 FORMAT: Format = Format(
     "omniverse",
-    lambda d: d.syntax == "usda" and f"{PREFIX}model" in d.text,
+    _matches,
     cameras,
     Writer(("*.usda",), _values, _content),
 )

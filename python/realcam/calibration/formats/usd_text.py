@@ -37,5 +37,5 @@ def _new_camera(found: dict[str, dict[str, object]], name: str) -> dict[str, obj
 def _value(text: str) -> str:
     quoted = TEXT.match(text)
     if quoted:
-        return next(part for part in quoted.groups() if part is not None)
+        return str(next(part for part in quoted.groups() if part is not None))
     return re.sub(r"[()\[\]]", " ", text).strip()
