@@ -97,7 +97,7 @@ def test_help(name: str, python: Said) -> None:
     assert not re.search(r"\w\.\.\.$", rest, re.M), "a line that was cut off"
     has_examples = name in EXAMPLES
     assert ("\nExamples:\n  realcam " in text) == has_examples
-    assert has_examples or name in ("", "lens", "sensor")
+    assert has_examples or name in ("", "lens", "sensor", "calibration")
 
 
 def test_ranges_in_the_help_are_those_of_people(python: Said) -> None:

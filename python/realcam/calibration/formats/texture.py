@@ -52,7 +52,8 @@ def _positions(camera: StatedCamera) -> Array:
         # Positions somewhat beside the picture let readers interpolate up to its edges; far ones do not matter.
         is_hidden = (status != 0) | ~((positions >= 0) & (positions < 2)).all(axis=1)
     positions[is_hidden] = -1
-    return positions.reshape(side, side, 2)
+    texture: Array = positions.reshape(side, side, 2)
+    return texture
 
 
 def _texture(document: Document, name: str, channels: int) -> Array:
