@@ -40,8 +40,6 @@ class _Kind(NamedTuple):
 
 
 def _map(camera: StatedCamera, is_redistorting: bool) -> Array:
-    if sees_behind(camera):
-        raise Inexpressible("ends at 90 degrees off the axis, and the picture shows more")
     K = camera.camera_model.camera_matrix
     return redistorting_map(camera, K) if is_redistorting else undistorting_map(camera, K, camera.size)
 
@@ -72,18 +70,25 @@ def _st_camera(kind: _Kind, document: Document, options: Options) -> StatedCamer
     return StatedCamera(model, (width, height), "map", format=kind.format, file_values=stated)
 
 
-def _st_values(kind: _Kind, camera: StatedCamera) -> Mapping[str, Any]:
+def _camera_matrix(camera: StatedCamera) -> Mapping[str, Any]:
+    """Returns the pinhole camera alone: the maps of a camera that was not read from maps are made when it is saved."""
+    if sees_behind(camera):
+        raise Inexpressible("ends at 90 degrees off the axis, and the picture shows more")
+    return {"camera_matrix": camera.camera_model.camera_matrix}
+
+
+def _st_map(kind: _Kind, camera: StatedCamera) -> Array:
     positions = _map(camera, kind.is_redistorting)
     width, height = camera.size
     values = np.stack([positions[:, :, 0] / width, 1 - positions[:, :, 1] / height], axis=2)
-    return {"map": np.nan_to_num(values, nan=HIDDEN), "camera_matrix": camera.camera_model.camera_matrix}
+    return np.nan_to_num(values, nan=HIDDEN)
 
 
-def _st_content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
-    values = cameras[0].values["map"]
-    picture = np.concatenate([values, np.zeros_like(values[:, :, :1])], axis=2)
-    attributes = {MATRIX_KEY: numbers(cameras[0].values["camera_matrix"])}
-    return {path: exr_content(picture, "RGB", attributes)}
+def _st_content(kind: _Kind, cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
+    ((_, values, camera),) = cameras
+    found = values["map"] if "map" in values else _st_map(kind, camera)
+    picture = np.concatenate([found, np.zeros_like(found[:, :, :1])], axis=2)
+    return {path: exr_content(picture, "RGB", {MATRIX_KEY: numbers(values["camera_matrix"])})}
 
 
 def _st_format(kind: _Kind, patterns: tuple[str, ...]) -> Format:
@@ -91,7 +96,13 @@ def _st_format(kind: _Kind, patterns: tuple[str, ...]) -> Format:
         kind.format,
         lambda d: d.suffix == ".exr" and ("redistort" in d.path.name.lower()) == kind.is_redistorting,
         lambda document, options: _st_cameras(kind, document, options),
-        Writer(patterns, lambda camera: _st_values(kind, camera), _st_content, is_single=True),
+        Writer(
+            patterns,
+            # Each format has a function of its own, as formats with the same one share the values of their files.
+            lambda camera: _camera_matrix(camera),
+            lambda cameras, path: _st_content(kind, cameras, path),
+            is_single=True,
+        ),
     )
 
 
@@ -133,7 +144,7 @@ def _remap_camera(document: Document, options: Options) -> StatedCamera:
     )
 
 
-def _remap_values(camera: StatedCamera) -> Mapping[str, Any]:
+def _remap_tables(camera: StatedCamera) -> Mapping[str, Any]:
     values: dict[str, Any] = {}
     for is_redistorting, keys in KEYS.items():
         positions = (_map(camera, is_redistorting) - 0.5).astype(np.float32)
@@ -145,7 +156,9 @@ def _remap_values(camera: StatedCamera) -> Mapping[str, Any]:
 
 def _remap_content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     file = io.BytesIO()
-    np.savez_compressed(file, **cameras[0].values)
+    ((_, values, camera),) = cameras
+    is_read = any(key in values for keys in KEYS.values() for key in keys)
+    np.savez_compressed(file, **(values if is_read else _remap_tables(camera)))
     return {path: file.getvalue()}
 
 
@@ -155,5 +168,5 @@ REMAP: Format = Format(
     "remap",
     lambda d: d.suffix == ".npz",
     lambda document, options: sole("camera", lambda: _remap_camera(document, options)),
-    Writer(("*.npz",), _remap_values, _remap_content, is_single=True),
+    Writer(("*.npz",), _camera_matrix, _remap_content, is_single=True),
 )
