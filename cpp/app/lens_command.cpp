@@ -7,6 +7,7 @@
 #include "../io/text/json_writer.hpp"
 #include "../io/text/printable.hpp"
 #include "../optics/lens/rings.hpp"
+#include "../shot/shot_keys.hpp"
 #include "help.hpp"
 #include "lens_file_options.hpp"
 #include "lens_report.hpp"
@@ -67,11 +68,13 @@ void add_lens_command(CLI::App& app) {
                      "A bundled lens, or a lens file: .toml, .zmx, .seq, .len, .dat, .json, .roa")
         ->required()
         ->type_name("LENS");
-    info->add_option("--f-number", options->f_number, "Close the diaphragm to f/N")->type_name("N");
-    info->add_option("--focus", options->focus, "Focus on an object plane this far from the film, or inf")
-        ->type_name("METRES");
-    info->add_option("--zoom", options->zoom, "Zoom position, by its name in `realcam lens info` [as in the lens file]")
-        ->type_name("NAME");
+    const auto add_ring = [info](const char* name, std::string& value) {
+        const shot::ShotKey& key = shot::shot_key(name);
+        info->add_option(key.option, value, key.text)->type_name(key.placeholder);
+    };
+    add_ring("f_number", options->f_number);
+    add_ring("focus_m", options->focus);
+    add_ring("zoom", options->zoom);
     add_lens_options(*info, options->file);
     info->add_flag("--json", options->as_json, "Print JSON; null stands for infinite, and for the radius of a plane");
     set_examples(*info, {

@@ -14,6 +14,7 @@
 #include "../io/files/readable_file.hpp"
 #include "../io/files/regular_file.hpp"
 #include "../io/files/uri.hpp"
+#include "../shot/shot_keys.hpp"
 
 namespace realcam::app {
 namespace {
@@ -25,6 +26,21 @@ bool same_file(const std::string& a, const std::string& b) {
     std::error_code error;
     if (fs::equivalent(a, b, error)) return true;
     return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) && !error;
+}
+
+/// Writes a line with the value of a setting.
+void write_value(std::ostream& text, const shot::SettingValue& value) {
+    std::visit(
+        [&]<class Value>(const Value& v) {
+            if constexpr (std::is_same_v<Value, std::vector<std::string>>)
+                for (const std::string& name : v) text << name << ',';
+            else if constexpr (std::is_same_v<Value, std::vector<SpectrumPoint>>)
+                for (const SpectrumPoint& point : v) text << point.wavelength_nm << ':' << point.power << ',';
+            else if constexpr (!std::is_same_v<Value, std::monostate>)
+                text << v;
+        },
+        value);
+    text << '\n';
 }
 
 }  // namespace
@@ -47,22 +63,16 @@ std::string settings_digest(const shot::ShotRequest& request, const Camera& came
     text.precision(17);  // distinguishes all doubles
     for (const auto& [name, value] : io::metadata_of(camera, request.settings).entries())
         if (name != "realcam:version") text << name << '=' << value << '\n';
-    // Settings that the metadata lack; -1 stands for a value that is not specified.
-    const RenderSettings& s = request.settings;
+    const shot::PictureRequest picture = shot::request_of(request.settings);
+    for (const shot::ShotKey& key : shot::shot_keys())
+        if (key.get && key.name != std::string_view("threads")) write_value(text << key.name << '=', key.get(picture));
+    // Settings of the shot that the metadata lack; -1 stands for a value that is not specified.
     const Vec3f light = request.environment_cd_m2.value_or(Vec3f{-1, -1, -1});
     text << camera.film.width << ' ' << camera.film.height << ' ' << request.scale << ' ' << light.x << ' ' << light.y
          << ' ' << light.z << ' ' << request.environment_change.scale << ' ' << request.environment_change.rotation_deg
-         << ' ' << s.max_bounces.value_or(-1) << ' ' << s.thresholds.pixels << ' ' << s.thresholds.codes << ' '
-         << s.effects.is_automatic << ' ' << s.effects.named << ' ' << s.effects.ghost_share << ' '
-         << s.effects.film_reflectance << ' ' << static_cast<int>(s.pupil_sampling) << ' '
-         << static_cast<int>(s.light_tracing) << ' ' << static_cast<int>(request.tone) << ' ' << request.denoises << ' '
-         << request.meters_exposure_time() << ' ' << request.iso_follows_s.value_or(-1) << ' '
-         << request.environment_layer;
-    for (std::size_t i = 0; i < kLayers.size(); ++i) text << ' ' << s.layers.has(static_cast<Layer>(i));
-    if (s.noise)
-        text << ' ' << s.noise->noise << ' ' << static_cast<int>(s.noise->unit) << ' ' << s.noise->max_samples << ' '
-             << s.noise->seconds;
-    text << '\n' << further_settings;
+         << ' ' << static_cast<int>(request.tone) << ' ' << request.denoises << ' ' << request.meters_exposure_time()
+         << ' ' << request.iso_follows_s.value_or(-1) << ' ' << request.environment_layer << '\n'
+         << further_settings;
     // The 64-bit FNV-1a hash: http://www.isthe.com/chongo/tech/comp/fnv
     constexpr std::uint64_t kOffsetBasis = 0xcbf29ce484222325, kPrime = 0x100000001b3;
     std::uint64_t digest = kOffsetBasis;

@@ -22,6 +22,7 @@
 #include "../render/film/pixel_sum.hpp"
 #include "../render/session/take_picture.hpp"
 #include "../render/settings/effect_names.hpp"
+#include "../render/settings/setting_names.hpp"
 #include "../shot/shot.hpp"
 #include "help.hpp"
 #include "interrupt.hpp"
@@ -144,7 +145,7 @@ public:
         meter(shot, request, *session, {});
         shot.camera = shaken(std::move(shot.camera), request.shake);
         const Plan plan = make_plan(*session, shot.scene, shot.camera, request.settings, true, fast_pupil_tracer());
-        std::fputs((as_json ? json_of(plan) : text_of(plan, io::name_of(plan.model))).c_str(), stdout);
+        std::fputs((as_json ? json_of(plan) : text_of(plan, name_of(plan.model))).c_str(), stdout);
     }
 
 private:
@@ -217,7 +218,7 @@ private:
         if (!plan.warning.empty()) warn(plan.warning);
         if (options_.explains && !options_.as_json && !options_.is_quiet)
             for (const Plan& part : plan.plans)
-                std::fputs((text_of(part, io::name_of(part.model)) + '\n').c_str(), stdout);
+                std::fputs((text_of(part, name_of(part.model)) + '\n').c_str(), stdout);
         return plan.summary;
     }
 

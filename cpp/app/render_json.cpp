@@ -2,10 +2,10 @@
 
 #include <limits>
 
-#include "../io/files/image_metadata.hpp"
 #include "../io/text/json_writer.hpp"
 #include "../plan/plan.hpp"
 #include "../render/settings/effect_names.hpp"
+#include "../render/settings/setting_names.hpp"
 #include "render_notices.hpp"
 
 namespace realcam::app {
@@ -34,7 +34,7 @@ void write_lens(JsonWriter& json, const LensSystem& lens) {
 
 void write_camera(JsonWriter& json, const Camera& camera) {
     json.key("camera").begin_object();
-    json.key("model").text(io::name_of(camera.model));
+    json.key("model").text(name_of(camera.model));
     write_point(json, "position_m", camera.pose.position_m);
     write_point(json, "look_at_m", camera.pose.look_at_m);
     write_point(json, "up", camera.pose.up);
@@ -54,8 +54,8 @@ void write_exposure(JsonWriter& json, const shot::Shot& shot, const Image& image
 void write_settings(JsonWriter& json, const shot::ShotRequest& request, const std::string& plan) {
     const RenderSettings& settings = request.settings;
     json.key("seed").number(settings.seed).key("max_bounces").number(settings.path().max_bounces);
-    json.key("transport").text(io::name_of(settings.transport)).key("clamp_cd_m2").number(settings.clamp);
-    json.key("tone").text(request.tone == ToneCurve::linear ? "linear" : "film");
+    json.key("transport").text(name_of(settings.transport)).key("clamp_cd_m2").number(settings.clamp);
+    json.key("tone").text(name_of(request.tone));
     write_texts(json, "effects", names_of(settings.effects));
     const auto light = settings.spectral_light();
     json.key("illuminant").text(light ? light->text() : "").key("plan").text(plan);
@@ -109,7 +109,7 @@ std::string render_as_json(const shot::Shot& shot, const shot::ShotRequest& requ
 
 std::string json_of(const Plan& plan) {
     io::JsonWriter json;
-    json.begin_object().key("model").text(io::name_of(plan.model)).key("effects").begin_array();
+    json.begin_object().key("model").text(name_of(plan.model)).key("effects").begin_array();
     for (const std::string& name : names_of(plan.effects)) json.text(name);
     json.end().key("decisions").begin_array();
     for (const PlanDecision& decision : plan.decisions) {

@@ -5,10 +5,10 @@
 #include <cstdio>
 
 #include "../camera/film/develop.hpp"
-#include "../io/files/image_metadata.hpp"
 #include "../optics/coating/coated_surface.hpp"
 #include "../render/session/metering.hpp"
 #include "../render/settings/effect_names.hpp"
+#include "../render/settings/setting_names.hpp"
 #include "values.hpp"
 
 namespace realcam::app {
@@ -42,7 +42,7 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
         what.resize(12, ' ');
         text += what + value + '\n';
     };
-    const std::string model = io::name_of(camera.model);
+    const std::string model = name_of(camera.model);
     line("lens", (lens.title.empty() ? lens.name : lens.title) + (model == "full" ? "" : ", as " + model + " model"));
     line("", "focal length " + number_text(data.effective_focal_length) + " mm, f/" + number_text(data.f_number, 3) +
                  (lens.iris.blades > 0 && !lens.is_wide_open() ? " with " + std::to_string(lens.iris.blades) + " blades"

@@ -90,7 +90,7 @@ shot::ShotRequest request_from_options(const RenderOptions& options) {
     request.lens_options = lens_options_of(options.lens_file);
     request.keeps_noise = options.keeps_noise;
     request.denoises = options.denoises && !options.keeps_noise;
-    resolve_noise_goal(request);
+    resolve_noise_goal(request, request.denoises);
     if (has_exr_output(options)) return request;
     for (const auto& [key, value] : options.changes.options)
         if (key->name == std::string_view("layers"))

@@ -1,6 +1,9 @@
 #include "read_camera_keys.hpp"
 
+#include <ranges>
+
 #include "shake_curve.hpp"
+#include "shot_keys.hpp"
 
 namespace realcam::shot {
 namespace {
@@ -12,57 +15,26 @@ std::optional<CameraKeyInterpolation> interpolation_named(std::string_view name)
     return std::nullopt;
 }
 
-/// Top-level key of the file that a value in [[key]] replaces; a file with both is an error.
-struct ReplacedKey {
-    bool (*has)(const CameraKey& key);  ///< true if the keyframe has the value
-    const char* key;    ///< name in [[key]]
-    const char* top_level_key;  ///< name outside of [[key]]
-    /// True for a setting of the lens, not of the camera. The top-level value then applies only to the file's first
-    /// lens.
-    bool is_lens_setting = false;
-};
-
-template <auto value>
-bool has(const CameraKey& key) {
-    return (key.*value).has_value();
+/// Throws InputError if the file has outside of [[key]] a value that a setting in [[key]] replaces.
+void check_not_outside(const ShotTable& shot, const ShotKey& setting) {
+    std::vector<std::string_view> replaced = setting.replaces;
+    replaced.insert(replaced.begin(), setting.name);
+    for (const std::string_view name : replaced)
+        if (const toml::node* const node = shot.find(name))
+            shot.fail('"' + std::string(name) + "\" and \"" + setting.name + "\" of [[key]] exclude each other", node);
 }
-
-constexpr ReplacedKey kReplacedKeys[] = {
-    {has<&CameraKey::focus_m>, "focus_m", "focus_m", true},
-    {has<&CameraKey::focal_length_mm>, "focal_length_mm", "focal_length_mm", true},
-    {has<&CameraKey::focal_length_mm>, "focal_length_mm", "zoom", true},
-    {has<&CameraKey::f_number>, "f_number", "f_number", true},
-    {has<&CameraKey::blades>, "blades", "blades", true},
-    {has<&CameraKey::blade_rounding>, "blade_rounding", "blade_rounding", true},
-    {has<&CameraKey::blade_rotation_deg>, "blade_rotation_deg", "blade_rotation_deg", true},
-    {has<&CameraKey::exposure_time_s>, "exposure_time_s", "exposure_time_s"},
-    {has<&CameraKey::iso>, "iso", "iso"},
-    {has<&CameraKey::iso>, "iso", "iso_follows_s"},
-    {has<&CameraKey::film_right_mm>, "film_shift_mm", "film_shift_mm"}};
 
 /// Reads the keyframes [[key]].
 void read_keys(const ShotTable& shot, ShotRequest& request) {
+    auto settings = std::views::filter(shot_keys(), [](const ShotKey& key) { return key.read_keyframe != nullptr; });
     bool has_other_lens = shot.is_changed("lens");  // a changed lens replaces those of the keys
     for (const ShotTable& table : shot.tables("key")) {
-        table.allow({"time_s", "lens", "focus_m", "focal_length_mm", "f_number", "blades", "blade_rounding",
-                     "blade_rotation_deg", "exposure_time_s", "iso", "film_shift_mm", "interpolation"});
+        std::vector<std::string_view> names = {"time_s", "lens", "interpolation"};
+        for (const ShotKey& setting : settings) names.emplace_back(setting.name);
+        table.allow(names);
         CameraKey key{.time_s = table.required_number("time_s")};
-        if (table.find("focus_m")) {
-            key.focus_m = table.number_or_auto("focus_m", "a number of metres or inf");
-            if (!key.focus_m)
-                table.fail("\"focus_m\" of a key must be a number of metres or inf", table.find("focus_m"));
-        }
-        key.focal_length_mm = table.number("focal_length_mm");
-        key.f_number = table.number("f_number");
-        key.exposure_time_s = table.number("exposure_time_s");
-        key.iso = table.number("iso");
-        if (const auto blades = table.number("blades")) key.blades = table.whole("blades", *blades);
-        key.blade_rounding = table.number("blade_rounding");
-        key.blade_rotation_deg = table.number("blade_rotation_deg");
-        if (const auto shift = table.numbers("film_shift_mm", 2); !shift.empty()) {
-            key.film_right_mm = shift[0];
-            key.film_up_mm = shift[1];
-        }
+        for (const ShotKey& setting : settings)
+            if (table.find(setting.name)) setting.read_keyframe(table, setting, key);
         key.interpolation =
             table.named("interpolation", interpolation_named, "linear, smooth or step").value_or(key.interpolation);
         if (const std::string lens = lens_of(table); !lens.empty()) key.lens.emplace().name = lens;
@@ -71,13 +43,9 @@ void read_keys(const ShotTable& shot, ShotRequest& request) {
         if (const std::string why = key_time_error(key.time_s, last); !why.empty())
             table.fail(why, table.find("time_s"));
         has_other_lens = has_other_lens || key.lens;
-        for (const ReplacedKey& replaced : kReplacedKeys)
-            if (const toml::node* node = replaced.has(key) && !(replaced.is_lens_setting && has_other_lens)
-                                             ? shot.find(replaced.top_level_key)
-                                             : nullptr)
-                shot.fail('"' + std::string(replaced.top_level_key) + "\" and \"" + replaced.key +
-                              "\" of [[key]] exclude each other",
-                          node);
+        for (const ShotKey& setting : settings)
+            if (table.find(setting.name) && !(setting.is_lens_setting && has_other_lens))
+                check_not_outside(shot, setting);
         request.keys.push_back(key);
         request.key_locations.push_back(table.location());
     }

@@ -107,7 +107,7 @@ void check_blades(const ShotRequest& request) {
     }
 }
 
-void resolve_noise_goal(ShotRequest& request) {
+void resolve_noise_goal(PictureRequest& request, bool denoises) {
     if (request.sampling == Sampling::counted) {
         if (!request.noise.says_nothing())
             throw InputError("noise, noise_codes, seconds and max_spp need spp \"auto\"");
@@ -116,7 +116,7 @@ void resolve_noise_goal(ShotRequest& request) {
     }
     NoiseRequest noise = request.noise;
     if (request.sampling == Sampling::unspecified && !noise.noise && !noise.noise_codes) {
-        noise.noise_codes = request.denoises ? kDefaultNoiseBeforeDenoising_codes : kDefaultNoiseGoal.noise;
+        noise.noise_codes = denoises ? kDefaultNoiseBeforeDenoising_codes : kDefaultNoiseGoal.noise;
         if (!noise.seconds) noise.seconds = kDefaultNoiseGoal.seconds;
     }
     request.settings.noise = goal_of(noise);

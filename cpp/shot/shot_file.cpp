@@ -59,7 +59,8 @@ bool parse_option_text(Syntax syntax, const std::string& word, const Store& stor
         return store(value), true;
     };
     switch (syntax) {
-        case Syntax::text: return true;
+        case Syntax::text:
+        case Syntax::spectrum: return true;
         case Syntax::number: return store_number(false);
         case Syntax::number_or_auto: return word == "auto" || store_number(false);
         case Syntax::distance_or_auto: return word == "auto" || store_number(true);

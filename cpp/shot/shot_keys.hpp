@@ -1,68 +1,18 @@
 #pragma once
-#include <optional>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
-#include "../camera/film/develop.hpp"
-#include "../camera/models/camera_view.hpp"
-#include "../camera/models/pupil_sampling.hpp"
-#include "../render/path/path_settings.hpp"
 #include "shot_request.hpp"
 
 namespace realcam::shot {
 
-// Names of camera models, tone curves, light transport, pupil sampling and light tracing on the command line and in
-// shot files: lists for help texts, and functions that return std::nullopt for other names.
-
-inline constexpr const char* kModelNames = "full, full_double, polynomial, thick, mapped, thin or pinhole";
-inline constexpr const char* kToneNames = "film or linear";
-inline constexpr const char* kTransportNames = "paths or whitted";
-inline constexpr const char* kPupilSamplingNames = "outline, rear_element, exit_pupil or pixel";
-inline constexpr const char* kLightTracingNames = "weighted, off or alone";
-
-inline std::optional<CameraModel> model_named(std::string_view name) {
-    if (name == "full") return CameraModel::full_lens;
-    if (name == "full_double") return CameraModel::full_lens_double;
-    if (name == "polynomial") return CameraModel::polynomial_lens;
-    if (name == "thick") return CameraModel::thick_lens;
-    if (name == "mapped") return CameraModel::mapped_lens;
-    if (name == "thin") return CameraModel::thin_lens;
-    if (name == "pinhole") return CameraModel::pinhole;
-    return std::nullopt;
-}
-
-inline std::optional<PupilSampling> pupil_sampling_named(std::string_view name) {
-    if (name == "outline") return PupilSampling::outline;
-    if (name == "rear_element") return PupilSampling::rear_element;
-    if (name == "exit_pupil") return PupilSampling::exit_pupil;
-    if (name == "pixel") return PupilSampling::pixel;
-    return std::nullopt;
-}
-
-inline std::optional<LightTracing> light_tracing_named(std::string_view name) {
-    if (name == "weighted") return LightTracing::weighted;
-    if (name == "off") return LightTracing::off;
-    if (name == "alone") return LightTracing::alone;
-    return std::nullopt;
-}
-
-inline std::optional<LightTransport> transport_named(std::string_view name) {
-    if (name == "paths") return LightTransport::paths;
-    if (name == "whitted") return LightTransport::whitted;
-    return std::nullopt;
-}
-
-inline std::optional<ToneCurve> tone_named(std::string_view name) {
-    if (name == "film") return ToneCurve::film;
-    if (name == "linear") return ToneCurve::linear;
-    return std::nullopt;
-}
-
 class ShotTable;
 
-/// Syntax of a key's value if it is written as one text, as on the command line.
+/// Syntax of a key's value if it is written as one text, as on the command line. It also tells the value's type.
 enum class Syntax {
     text,               ///< any text
     number,             ///< 0.5, 1/125
@@ -75,21 +25,43 @@ enum class Syntax {
     two_numbers,        ///< 0,-3.5
     size,               ///< 36x24
     names,              ///< dispersion,ghosts
+    spectrum,           ///< a text, a number, or points; points have no such text, but the text may hold a table
 };
 
-/// A setting of a shot: a key of shot files, a keyword of Python's Shot.load, and an option of the command line.
+/// Value of a setting of a picture, in the type that its syntax implies. std::monostate stands for "auto", or for no
+/// value.
+using SettingValue = std::variant<std::monostate, std::int64_t, double, std::string, std::vector<std::string>,
+                                  std::vector<SpectrumPoint>>;
+
+struct ShotKey;
+
+/// Sets a value in a request. `shown`: the key's name in messages. Throws InputError if the value is invalid.
+using SetSetting = void (*)(const ShotKey& key, const std::string& shown, PictureRequest& request,
+                            const SettingValue& value);
+
+/// A setting of a shot: a key of shot files, a keyword of Python's Shot.load, and an option of the command line. A
+/// setting of a picture is also a keyword and an attribute of Python's RenderSettings.
 struct ShotKey {
     const char* name;
     const char* option;  ///< null if the command line has no such option
     const char* group;   ///< heading of the option in help texts
     const char* placeholder;  ///< for the option's value in help texts; names the unit
     Syntax syntax;
-    const char* wanted;  ///< noun phrase for the expected values, after "must be" in messages
+    std::string wanted;  ///< noun phrase for the expected values, after "must be" in messages
     std::string text;    ///< description in help texts
     const char* initial;  ///< description of the default; empty: none
     std::vector<std::string_view> replaces;  ///< keys that a change of this key removes
     void (*read)(const ShotTable&, const ShotKey&,
                  ShotRequest&);  ///< sets the value in a request; called if the table has the key
+    /// Sets the value in a keyframe [[key]]; null: keyframes do not have this setting.
+    void (*read_keyframe)(const ShotTable&, const ShotKey&, CameraKey&) = nullptr;
+    /// True for a setting of the lens in keyframes: the value outside of [[key]] then applies only to the file's first
+    /// lens.
+    bool is_lens_setting = false;
+    SetSetting set = nullptr;  ///< for a setting of a picture; otherwise null
+    /// Returns the value of a setting of a picture; null if the setting only stands for values of other settings.
+    SettingValue (*get)(const PictureRequest& request) = nullptr;
+    const char* details = "";  ///< further sentences of the description, for reference pages and docstrings
 
     /// Description with the default value, as help texts show it.
     std::string help() const { return *initial ? text + " [" + initial + ']' : text; }
@@ -97,5 +69,14 @@ struct ShotKey {
 
 /// All keys, in the order in which they are read and listed.
 std::span<const ShotKey> shot_keys();
+
+/// Returns the keys of the group "Picture", which shot_keys lists behind the others.
+std::vector<ShotKey> picture_keys();
+
+/// Returns the key of this name, which must exist.
+const ShotKey& shot_key(std::string_view name);
+
+/// Returns a request that has the noise goal of `settings` as the user would specify it.
+PictureRequest request_of(const RenderSettings& settings);
 
 }  // namespace realcam::shot

@@ -28,9 +28,16 @@ inline constexpr NoiseGoal kDefaultNoiseGoal = {.noise = 2, .seconds = 60};
 /// (docs/denoising.md).
 inline constexpr double kDefaultNoiseBeforeDenoising_codes = 6;
 
+/// Settings of a picture as the user specifies them: the noise goal is not resolved yet (resolve_noise_goal).
+struct PictureRequest {
+    RenderSettings settings;
+    Sampling sampling = Sampling::unspecified;
+    NoiseRequest noise;
+};
+
 /// Specification of a photograph, from the command line or a shot file. Values that it omits are chosen by set_up and
 /// meter (shot.hpp).
-struct ShotRequest {
+struct ShotRequest : PictureRequest {
     std::string scene;  ///< scene file
     double scale = 1;   ///< metres per unit of the scene file
     std::string texture;  ///< picture for all materials; empty: the scene's own textures
@@ -68,9 +75,6 @@ struct ShotRequest {
     std::optional<double> exposure_time_s;
     double iso = 100;
 
-    RenderSettings settings;
-    Sampling sampling = Sampling::unspecified;
-    NoiseRequest noise;
     bool denoises = false;  ///< set by --denoise
     /// Set by --no-denoise. Otherwise pictures for screens that miss the default noise goal are denoised.
     bool keeps_noise = false;
@@ -85,9 +89,9 @@ struct ShotRequest {
 };
 
 /// Sets the noise goal in the settings. Throws InputError if the number of samples is specified together with parts of
-/// the goal. If no noise is specified, the goal is kDefaultNoiseGoal or, before denoising,
+/// the goal. If neither is specified, the goal is kDefaultNoiseGoal or, if the picture will be denoised,
 /// kDefaultNoiseBeforeDenoising_codes; if no time is specified either, the limit of kDefaultNoiseGoal applies.
-void resolve_noise_goal(ShotRequest& request);
+void resolve_noise_goal(PictureRequest& request, bool denoises = false);
 
 /// Throws InputError if the blades of a request do not form a valid diaphragm.
 void check_blades(const ShotRequest& request);

@@ -101,7 +101,7 @@ public:
 
     /// A number, which may be infinite; std::nullopt for the text "auto" or if the key is absent. `wanted`: noun phrase
     /// for the expected values.
-    std::optional<double> number_or_auto(const char* key, const char* wanted) const {
+    std::optional<double> number_or_auto(const char* key, const std::string& wanted) const {
         const toml::node* node = find(key);
         if (!node || node->value<std::string>() == "auto") return std::nullopt;
         const double number = node->is_number() ? node->value_or(0.0) : std::nan("");
@@ -113,7 +113,8 @@ public:
     template <class Value = int>
     Value whole(const char* key, double number) const {
         constexpr Value kMax = std::numeric_limits<Value>::max();
-        if (number != std::floor(number) || !(number >= 0) || !(number <= kMax))
+        // The largest std::int64_t is no double: the conversion rounds it up, and the sum remains the same number.
+        if (number != std::floor(number) || !(number >= 0) || !(number < static_cast<double>(kMax) + 1))
             fail(shown(key) + " must be a whole number from 0 to " + std::to_string(kMax), find(key));
         return static_cast<Value>(number);
     }
@@ -138,7 +139,7 @@ public:
     /// Value of the name under a key, from `find_name`; std::nullopt if the key is absent. An unknown name is an error,
     /// for which `wanted` lists the known names.
     template <class Named>
-    auto named(const char* key, Named&& find_name, const char* wanted) const -> decltype(find_name("")) {
+    auto named(const char* key, Named&& find_name, const std::string& wanted) const -> decltype(find_name("")) {
         const std::string value = text(key);
         if (!find(key)) return std::nullopt;
         const auto found = find_name(value);

@@ -3043,37 +3043,48 @@ class RenderSettings:
     """
     Settings of a picture, for rc.render, rc.Session, rc.LiveView, rc.plan and rc.Shot. Immutable.
 
-    spp: samples per pixel, or "auto": adaptive sampling up to a noise goal, by tiles of 16 x 16 pixels (docs/sampling.md).
-    noise, noise_codes: noise goal with spp="auto": RMS error of the pixels of a tile, as a fraction of the tile's mean (or
-      of a hundredth of white if that is larger), or in codes (steps) of the developed 8-bit picture. Default: 1 code.
-    seconds, max_spp: limits with spp="auto": time for sampling, and samples of a pixel (default 4096). A warning is
-      issued if the goal is not reached.
-    seed: of the random numbers, 0 to 2^32 - 1.
-    max_bounces: maximum number of bounces of a path, 0 (direct light only) to 64; "auto": as many as the shot requires,
-      by threshold_codes (docs/plan.md).
-    transport: "paths": all light paths; "whitted": direct light, and specular reflection and refraction.
-    clamp_cd_m2: upper limit of the radiance of indirect light, which reduces bright dots and darkens the picture; 0: none.
-    threads: number of CPU threads; 0: all.
-    layers: names of additional layers of Image.layers (docs/layers.md), or "all", which does not include dual_pixel.
-    effects: names of optional effects (rc.effects() lists them), or () for none; or "auto": the planner selects the
-      effects that the shot requires, and the cheapest camera model that shows them (docs/plan.md). Warns of effects that
-      the lens cannot show.
-    quality: thresholds of the planner: "draft" (2 pixels, 4 codes), "photo" (0.5, 1) or "reference" (0.1, 0.25).
-    threshold_px, threshold_codes: thresholds of the planner instead of those of quality: an effect is simulated if the
-      picture without it would differ by more pixels or codes.
-    illuminant: spectrum of all light, for dispersion and diffraction: "D65", "D50", "A", "FL2", a wavelength in nm, or
-      (wavelength_nm, power) pairs; None: D65. The attribute is a text.
-    lens_filter: absorbing filter in front of the lens (docs/filters.md): "ND8" or 1/8 passes an eighth of the light, "ND0.9"
-      has the optical density 0.9, and (wavelength_nm, transmittance) pairs are a coloured filter, which needs dispersion
-      or diffraction. None: no filter. The attribute is a text.
-    pupil_sampling: part of the pupil to which the full lens's rays are sent: "outline": the region through which real
-      rays pass. The others are for comparison (docs/accuracy.md): "rear_element", "exit_pupil", and "pixel", the region in
+    spp: Samples per pixel, or auto: by tile of the film, until the noise goal is reached, by default 1 code [until the
+      noise is 2 codes, for 60 seconds at most]. A tile has 16 x 16 pixels (docs/sampling.md).
+    noise: Noise goal, unless spp is a number: relative to a tile's light, such as 0.01. It is the RMS error of the tile's
+      pixels as a fraction of their mean, or of a hundredth of white if that is larger.
+    noise_codes: The same noise goal in 8-bit codes of the developed picture.
+    seconds: Time limit for taking samples, unless spp is a number. A warning is issued if the noise goal is not reached.
+    max_spp: Largest number of samples per pixel, unless spp is a number [4096].
+    seed: Seed of the random numbers [0]. 0 to 2^32 - 1.
+    max_bounces: Largest number of bounces of light; 0: direct light only [auto: what the shot calls for]. 0 to 64. With
+      auto, threshold_codes decides (docs/plan.md).
+    transport: paths: all light paths; whitted: direct light, and reflections and refractions of mirrors and smooth glass
+      [paths].
+    clamp_cd_m2: Largest radiance of indirect light in cd/m^2: fewer fireflies, but a picture that is too dark [0: no
+      limit].
+    layers: Layers also written to .exr, separated by commas: all, or some of depth, normal, albedo, circle_of_confusion_mm,
+      sample_count, variance, depth_middle, normal_middle, object_id, material_id, motion, position_middle, traced_light,
+      dual_pixel_left, dual_pixel_right [none]. A list in shot files. all does not include dual_pixel (docs/layers.md).
+    effects: Effects that are also simulated or, with a minus, left out, separated by commas after a "=": auto, none,
+      dispersion, coatings, ghosts, film_reflection, diffraction, -motion_blur, -rolling_shutter [auto: what the shot calls
+      for]. A list in shot files, such as ["dispersion", "-motion_blur"]; the empty list switches all effects off. With
+      auto, the planner also selects the cheapest camera model that shows the effects (docs/plan.md). A warning is issued
+      for effects that the lens cannot show.
+    quality: Size below which effects are left out by auto: draft (2 pixels, 4 codes), photo (0.5, 1) or reference (0.1,
+      0.25) [photo].
+    threshold_px: Threshold in pixels, instead of that of the quality.
+    threshold_codes: Threshold in 8-bit codes, instead of that of the quality.
+    illuminant: Spectrum of all light, for dispersion and diffraction: D65, D50, A, FL2, a wavelength in nm, or a table of
+      wavelengths and powers (400:0.5,550:1,700:0.2) [D65]. Points are a list of pairs in shot files and in Python
+      (docs/dispersion.md).
+    lens_filter: Filter in front of the lens: a neutral density, ND8 (1/8 of the light) or ND0.9 (optical density), a
+      transmittance from 0 to 1, or a table of wavelengths and transmittances (400:0.05,550:0.1,600:0.9) [none]. A coloured
+      filter needs dispersion or diffraction (docs/filters.md).
+    pupil_sampling: Part of the pupil to which the full lens's rays are sent; outline: the region through which real rays
+      pass [outline]. The others are for comparison (docs/accuracy.md): rear_element, exit_pupil, and pixel, the region in
       which the pixel's earlier samples passed.
-    light_tracing: method for the full lens's images of lights that are small or out of focus: "weighted": samples of
-      pixels and samples from the lights, combined by multiple importance sampling. The others are for comparison: "alone":
-      samples from the lights; "off": samples of pixels, which never hit point lights and suns.
+    light_tracing: Method for the full lens's images of lights that are small or out of focus; weighted: samples of pixels
+      and samples from the lights, combined by multiple importance sampling [weighted]. The others are for comparison:
+      alone: samples from the lights; off: samples of pixels, which never hit point lights and suns.
+    threads: Number of threads; 0: all [0].
 
-    Raises InputError.
+    Spectra are texts as attributes, and may be (wavelength_nm, value) pairs as arguments. The default of spp is 64, and
+    seconds has none: a shot has other defaults than functions. Raises InputError.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
@@ -3089,7 +3100,6 @@ class RenderSettings:
         max_bounces: int | str = "auto",
         transport: str = "paths",
         clamp_cd_m2: float = 0.0,
-        threads: int = 0,
         layers: str | Iterable[str] = (),
         effects: str | Iterable[str] = ("auto",),
         quality: str = "photo",
@@ -3099,6 +3109,7 @@ class RenderSettings:
         lens_filter: str | float | Sequence[tuple[float, float]] | None = None,
         pupil_sampling: str = "outline",
         light_tracing: str = "weighted",
+        threads: int = 0,
     ) -> None: ...
     def with_(self, **changes: Unpack[_SettingsKwargs]) -> RenderSettings:
         """
@@ -3106,41 +3117,95 @@ class RenderSettings:
         the noise goal if spp is a number, and the illuminant if no effect uses it. Raises InputError.
         """
     @property
-    def clamp_cd_m2(self) -> float: ...
+    def clamp_cd_m2(self) -> float:
+        """
+        Largest radiance of indirect light in cd/m^2: fewer fireflies, but a picture that is too dark [0: no limit].
+        """
     @property
-    def effects(self) -> tuple[str, ...]: ...
+    def effects(self) -> tuple[str, ...]:
+        """
+        Effects that are also simulated or, with a minus, left out, separated by commas after a "=": auto, none, dispersion, coatings, ghosts, film_reflection, diffraction, -motion_blur, -rolling_shutter [auto: what the shot calls for]. A list in shot files, such as ["dispersion", "-motion_blur"]; the empty list switches all effects off. With auto, the planner also selects the cheapest camera model that shows the effects (docs/plan.md). A warning is issued for effects that the lens cannot show.
+        """
     @property
-    def illuminant(self) -> str | None: ...
+    def illuminant(self) -> str | None:
+        """
+        Spectrum of all light, for dispersion and diffraction: D65, D50, A, FL2, a wavelength in nm, or a table of wavelengths and powers (400:0.5,550:1,700:0.2) [D65]. Points are a list of pairs in shot files and in Python (docs/dispersion.md).
+        """
     @property
-    def layers(self) -> tuple[str, ...]: ...
+    def layers(self) -> tuple[str, ...]:
+        """
+        Layers also written to .exr, separated by commas: all, or some of depth, normal, albedo, circle_of_confusion_mm, sample_count, variance, depth_middle, normal_middle, object_id, material_id, motion, position_middle, traced_light, dual_pixel_left, dual_pixel_right [none]. A list in shot files. all does not include dual_pixel (docs/layers.md).
+        """
     @property
-    def lens_filter(self) -> str | None: ...
+    def lens_filter(self) -> str | None:
+        """
+        Filter in front of the lens: a neutral density, ND8 (1/8 of the light) or ND0.9 (optical density), a transmittance from 0 to 1, or a table of wavelengths and transmittances (400:0.05,550:0.1,600:0.9) [none]. A coloured filter needs dispersion or diffraction (docs/filters.md).
+        """
     @property
-    def light_tracing(self) -> str: ...
+    def light_tracing(self) -> str:
+        """
+        Method for the full lens's images of lights that are small or out of focus; weighted: samples of pixels and samples from the lights, combined by multiple importance sampling [weighted]. The others are for comparison: alone: samples from the lights; off: samples of pixels, which never hit point lights and suns.
+        """
     @property
-    def max_bounces(self) -> int | Literal["auto"]: ...
+    def max_bounces(self) -> int | Literal["auto"]:
+        """
+        Largest number of bounces of light; 0: direct light only [auto: what the shot calls for]. 0 to 64. With auto, threshold_codes decides (docs/plan.md).
+        """
     @property
-    def max_spp(self) -> int | None: ...
+    def max_spp(self) -> int | None:
+        """
+        Largest number of samples per pixel, unless spp is a number [4096].
+        """
     @property
-    def noise(self) -> float | None: ...
+    def noise(self) -> float | None:
+        """
+        Noise goal, unless spp is a number: relative to a tile's light, such as 0.01. It is the RMS error of the tile's pixels as a fraction of their mean, or of a hundredth of white if that is larger.
+        """
     @property
-    def noise_codes(self) -> float | None: ...
+    def noise_codes(self) -> float | None:
+        """
+        The same noise goal in 8-bit codes of the developed picture.
+        """
     @property
-    def pupil_sampling(self) -> str: ...
+    def pupil_sampling(self) -> str:
+        """
+        Part of the pupil to which the full lens's rays are sent; outline: the region through which real rays pass [outline]. The others are for comparison (docs/accuracy.md): rear_element, exit_pupil, and pixel, the region in which the pixel's earlier samples passed.
+        """
     @property
-    def seconds(self) -> float | None: ...
+    def seconds(self) -> float | None:
+        """
+        Time limit for taking samples, unless spp is a number. A warning is issued if the noise goal is not reached.
+        """
     @property
-    def seed(self) -> int: ...
+    def seed(self) -> int:
+        """
+        Seed of the random numbers [0]. 0 to 2^32 - 1.
+        """
     @property
-    def spp(self) -> int | Literal["auto"]: ...
+    def spp(self) -> int | Literal["auto"]:
+        """
+        Samples per pixel, or auto: by tile of the film, until the noise goal is reached, by default 1 code [until the noise is 2 codes, for 60 seconds at most]. A tile has 16 x 16 pixels (docs/sampling.md).
+        """
     @property
-    def threads(self) -> int: ...
+    def threads(self) -> int:
+        """
+        Number of threads; 0: all [0].
+        """
     @property
-    def threshold_codes(self) -> float: ...
+    def threshold_codes(self) -> float:
+        """
+        Threshold in 8-bit codes, instead of that of the quality.
+        """
     @property
-    def threshold_px(self) -> float: ...
+    def threshold_px(self) -> float:
+        """
+        Threshold in pixels, instead of that of the quality.
+        """
     @property
-    def transport(self) -> str: ...
+    def transport(self) -> str:
+        """
+        paths: all light paths; whitted: direct light, and reflections and refractions of mirrors and smooth glass [paths].
+        """
 
 @final
 class RenderStats:
@@ -3593,6 +3658,57 @@ class Shake:
         Seed of the random process.
         """
 
+@final
+class _ShotKey:
+    """
+    Internal. A setting of a shot: a key of shot files.
+    """
+    @property
+    def details(self) -> str:
+        """
+        Further sentences of the description; may be empty.
+        """
+    @property
+    def group(self) -> str:
+        """
+        Heading of the option in help texts.
+        """
+    @property
+    def help(self) -> str:
+        """
+        Description with the default.
+        """
+    @property
+    def initial(self) -> str:
+        """
+        Description of the default; may be empty.
+        """
+    @property
+    def name(self) -> str:
+        """
+        Name in shot files and in Python.
+        """
+    @property
+    def option(self) -> str | None:
+        """
+        Option of the command line; None: there is none.
+        """
+    @property
+    def placeholder(self) -> str:
+        """
+        Placeholder of the option's value.
+        """
+    @property
+    def text(self) -> str:
+        """
+        Description in help texts.
+        """
+
+def _shot_keys() -> list[_ShotKey]:
+    """
+    Internal. Returns all keys of shot files.
+    """
+
 def _check_camera_keys(camera: Camera, keys: Sequence[CameraKey]) -> None:
     """
     Internal. Raises InputError if keys are invalid or the camera cannot be set to one of them.
@@ -3627,11 +3743,6 @@ def _followed_isos(
 ) -> list[float]:
     """
     Internal. Returns the ISO of each frame of a video with continuous metering. smoothing_s: time constant.
-    """
-
-def _shot_keys() -> list[tuple[str, str | None, str, str, str]]:
-    """
-    Internal. Returns (name, option, group, placeholder, help) of each key of shot files; option may be None.
     """
 
 def _read_shot(
@@ -4178,7 +4289,6 @@ class _SettingsKwargs(TypedDict, total=False):
     max_bounces: int | str
     transport: str
     clamp_cd_m2: float
-    threads: int
     layers: str | Iterable[str]
     effects: str | Iterable[str]
     quality: str
@@ -4188,3 +4298,4 @@ class _SettingsKwargs(TypedDict, total=False):
     lens_filter: str | float | Sequence[tuple[float, float]] | None
     pupil_sampling: str
     light_tracing: str
+    threads: int

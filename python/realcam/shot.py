@@ -213,7 +213,7 @@ def photograph(
 
 def _keys_as_text() -> str:
     """Returns the list of all shot keys with their help, for docstrings."""
-    return "\n".join(f"    {name}: {text[0].lower()}{text[1:]}" for name, *_, text in _core._shot_keys())
+    return "\n".join(f"    {key.name}: {key.help[0].lower()}{key.help[1:]}" for key in _core._shot_keys())
 
 
 for _function in (Shot.load.__func__, photograph):  # type: ignore[attr-defined]

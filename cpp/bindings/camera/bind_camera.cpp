@@ -11,9 +11,8 @@
 #include "../../camera/film/camera.hpp"
 #include "../../camera/models/pinhole_camera.hpp"
 #include "../../embree/lens_rays.hpp"
-#include "../../io/files/image_metadata.hpp"
 #include "../../optics/pupil/pupil.hpp"
-#include "../../shot/shot_keys.hpp"
+#include "../../render/settings/setting_names.hpp"
 #include "../bindings.hpp"
 #include "../values/arrays.hpp"
 #include "../values/short_text.hpp"
@@ -26,8 +25,8 @@ using namespace py::literals;
 namespace {
 
 CameraModel model_from(const std::string& name) {
-    if (const auto model = shot::model_named(name)) return *model;
-    throw InputError("unknown camera model \"" + name + "\"; expected pinhole, thin, mapped, thick or full");
+    if (const auto model = value_named(kCameraModels, name)) return *model;
+    throw InputError("unknown camera model \"" + name + "\"; expected " + one_of(kCameraModels));
 }
 
 Film make_film(double width_mm, double height_mm, std::pair<int, int> resolution, std::pair<double, double> shift_mm) {
@@ -131,8 +130,7 @@ std::string text_of(const Film& film) {
 
 std::string text_of(const Camera& camera) {
     const std::string name = camera.lens.name.empty() ? "a lens" : shortened(camera.lens.name);
-    const std::string model =
-        camera.model == CameraModel::full_lens ? "" : std::string(", ") + io::name_of(camera.model);
+    const std::string model = camera.model == CameraModel::full_lens ? "" : std::string(", ") + name_of(camera.model);
     return "<realcam.Camera with " + name + " f/" + digits(nominal_first_order(camera.lens).f_number) + model + " at " +
            point_text(camera.pose.position_m) + ", looks at " + point_text(camera.pose.look_at_m) + ", " +
            time_text(camera.exposure_time_s) + ", ISO " + digits(camera.iso) + '>';
@@ -244,7 +242,7 @@ perspective: a rotation about it causes no parallax. None if it lies at infinity
         .def_property_readonly("motion", &keys_of,
                                "Keys (time_s, position, look_at, up); empty if the camera does not move.")
         .def_property_readonly(
-            "model", [](const Camera& c) { return io::name_of(c.model); }, "Name of the camera model, see Camera().")
+            "model", [](const Camera& c) { return name_of(c.model); }, "Name of the camera model, see Camera().")
         .def("__repr__", [](const Camera& c) { return text_of(c); });
     m.def(
         "pupil_setup",

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "../../embree/lens_rays.hpp"
-#include "../../io/files/image_metadata.hpp"
 #include "../../plan/make_plan.hpp"
+#include "../../render/settings/setting_names.hpp"
 #include "../bindings.hpp"
 #include "../values/short_text.hpp"
 #include "../values/value_methods.hpp"
@@ -36,7 +36,7 @@ struct Planned {
 };
 
 Planned planned_of(const Plan& plan) {
-    const std::string model = io::name_of(plan.model);
+    const std::string model = name_of(plan.model);
     Planned planned{model, names_of(plan.effects), plan.max_bounces, {}, text_of(plan, model), summary_of(plan)};
     for (const PlanDecision& d : plan.decisions)
         planned.decisions.push_back({d.name, name_of(d.unit), d.by == DecidedBy::user ? "user" : "planner", d.reason,
@@ -60,14 +60,14 @@ std::tuple<std::string, RenderSettings, std::string, std::string> resolved_video
                                                                                  const std::vector<Camera>& others,
                                                                                  const RenderSettings& settings,
                                                                                  const std::string& device) {
-    if (!settings.needs_plan()) return {io::name_of(camera.model), settings, "", ""};  // avoids creating a session
+    if (!settings.needs_plan()) return {name_of(camera.model), settings, "", ""};  // avoids creating a session
     std::vector<Camera> cameras = {camera};
     cameras.insert(cameras.end(), others.begin(), others.end());
     ResolvedSettings video = OwnedSession::shared(device).use([&](const auto& session) {
         return resolve_settings(*session, scene, cameras, settings, fast_pupil_tracer(),
                                 [](double) { return heed_signals(); });
     });
-    return {io::name_of(video.model), std::move(video.settings), video.summary, video.warning};
+    return {name_of(video.model), std::move(video.settings), video.summary, video.warning};
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "../../render/session/metering.hpp"
 #include "../../render/session/take_picture.hpp"
 #include "../../render/settings/effect_names.hpp"
-#include "../../shot/shot_keys.hpp"
+#include "../../render/settings/setting_names.hpp"
 #include "../bindings.hpp"
 #include "../values/arrays.hpp"
 #include "../values/short_text.hpp"
@@ -31,8 +31,8 @@ void warn(const std::string& text) {
 }
 
 ToneCurve tone_curve_from(const std::string& name) {
-    if (const auto tone = shot::tone_named(name)) return *tone;
-    throw InputError("unknown tone curve \"" + name + "\"; expected film or linear");
+    if (const auto tone = value_named(kToneCurves, name)) return *tone;
+    throw InputError("unknown tone curve \"" + name + "\"; expected " + one_of(kToneCurves));
 }
 
 std::uint32_t seed_from(std::int64_t seed, const char* what) {

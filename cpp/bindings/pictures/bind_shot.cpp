@@ -11,6 +11,7 @@
 #include "../../camera/film/shake.hpp"
 #include "../../io/files/image_metadata.hpp"
 #include "../../render/session/session.hpp"
+#include "../../render/settings/setting_names.hpp"
 #include "../../shot/shake_curve.hpp"
 #include "../../shot/shot.hpp"
 #include "../../shot/shot_file.hpp"
@@ -233,12 +234,27 @@ y_m, z_m. All but time_s may be missing. Raises InputError with file and line.)"
         .def("__repr__", &text_of_shake);
 }
 
-/// Returns (name, option, group, placeholder, help) of each key of shot files; see shot::ShotKey.
-Typed<"list[tuple[str, str | None, str, str, str]]", py::list> listed_shot_keys() {
-    py::list keys;
-    for (const shot::ShotKey& key : shot::shot_keys())
-        keys.append(py::make_tuple(key.name, key.option, key.group, key.placeholder, key.help()));
-    return keys;
+void bind_shot_keys(py::module_& m) {
+    using shot::ShotKey;
+    py::class_<ShotKey>(m, "_ShotKey", "Internal. A setting of a shot: a key of shot files.")
+        .def_readonly("name", &ShotKey::name, "Name in shot files and in Python.")
+        .def_property_readonly(
+            "option",
+            [](const ShotKey& key) { return key.option ? std::optional<std::string>(key.option) : std::nullopt; },
+            "Option of the command line; None: there is none.")
+        .def_readonly("group", &ShotKey::group, "Heading of the option in help texts.")
+        .def_readonly("placeholder", &ShotKey::placeholder, "Placeholder of the option's value.")
+        .def_readonly("text", &ShotKey::text, "Description in help texts.")
+        .def_readonly("initial", &ShotKey::initial, "Description of the default; may be empty.")
+        .def_readonly("details", &ShotKey::details, "Further sentences of the description; may be empty.")
+        .def_property_readonly("help", &ShotKey::help, "Description with the default.");
+    m.def(
+        "_shot_keys",
+        [] {
+            const std::span<const ShotKey> keys = shot::shot_keys();
+            return std::vector<ShotKey>(keys.begin(), keys.end());
+        },
+        "Internal. Returns all keys of shot files.");
 }
 
 /// Returns pairs of shot key and value, in the order of the keys, for values by key name.
@@ -270,7 +286,7 @@ Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std
         request = scene_in_memory ? shot::shot_of_scene(name, changed) : shot::read_shot(name, changed);
         request.lens_in_memory = std::move(lens);
         request.denoises = denoises;
-        shot::resolve_noise_goal(request);
+        shot::resolve_noise_goal(request, denoises);
         request.lens_options.keep_going = heed_signals;
         request.lens_options.warn = [&](const std::string& note) { notes.push_back(note); };
         shot::resolve_keys(request);
@@ -287,8 +303,7 @@ Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std
         OwnedSession::shared(device).use([&](const auto& session) { meter(shot, request, *session, report); });
     }
     py::dict fields("scene"_a = shot.scene, "camera"_a = shot.camera, "settings"_a = request.settings,
-                    "tone"_a = request.tone == ToneCurve::film ? "film" : "linear",
-                    "keys"_a = py::tuple(py::cast(request.keys)),
+                    "tone"_a = name_of(request.tone), "keys"_a = py::tuple(py::cast(request.keys)),
                     "shake"_a = request.shake.is_still() ? std::nullopt : std::optional(request.shake),
                     "iso_follows_s"_a = request.iso_follows_s);
     return py::make_tuple(std::move(fields), request.sampling == shot::Sampling::unspecified);
@@ -312,6 +327,7 @@ Typed<"dict[str, str]", py::dict> metadata(const Camera& camera, const RenderSet
 void bind_shot(py::module_& m) {
     bind_key(m);
     bind_shake(m);
+    bind_shot_keys(m);
     m.def("_check_camera_keys", &check_camera_keys, "camera"_a, "keys"_a,
           "Internal. Raises InputError if keys are invalid or the camera cannot be set to one of them.");
     m.def("_camera_at", &camera_at_time, "camera"_a, "keys"_a, "shake"_a, "opens_s"_a,
@@ -322,8 +338,6 @@ void bind_shot(py::module_& m) {
     m.def("_followed_isos", &followed_isos, "scene"_a, "camera"_a, "keys"_a, "settings"_a, "frames"_a,
           "frames_per_second"_a, "smoothing_s"_a, "device"_a,
           "Internal. Returns the ISO of each frame of a video with continuous metering. smoothing_s: time constant.");
-    m.def("_shot_keys", &listed_shot_keys,
-          "Internal. Returns (name, option, group, placeholder, help) of each key of shot files; option may be None.");
     m.def("_read_shot", &read_shot, "path"_a, "changes"_a, "options"_a, "scene"_a, "lens"_a, "denoises"_a, "device"_a,
           R"(Internal: use realcam.Shot. Returns the attributes of a Shot, and True if neither spp nor a noise goal is
 specified. changes: TOML text that overrides the file; options: values by key name, as on the command line. scene, lens:

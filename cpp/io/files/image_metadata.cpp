@@ -7,6 +7,7 @@
 #include "../../optics/coating/coated_surface.hpp"
 #include "../../optics/lens/focus.hpp"
 #include "../../render/settings/effect_names.hpp"
+#include "../../render/settings/setting_names.hpp"
 
 namespace realcam::io {
 namespace {
@@ -30,23 +31,6 @@ std::string numbers(std::initializer_list<double> values) {
 }
 
 }  // namespace
-
-std::string name_of(CameraModel model) {
-    switch (model) {
-        case CameraModel::pinhole: return "pinhole";
-        case CameraModel::thin_lens: return "thin";
-        case CameraModel::mapped_lens: return "mapped";
-        case CameraModel::thick_lens: return "thick";
-        case CameraModel::polynomial_lens: return "polynomial";
-        case CameraModel::full_lens_double: return "full_double";
-        case CameraModel::full_lens: break;
-    }
-    return "full";
-}
-
-std::string name_of(LightTransport transport) {
-    return transport == LightTransport::whitted ? "whitted" : "paths";
-}
 
 ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) {
     const FirstOrder data = nominal_first_order(camera.lens);

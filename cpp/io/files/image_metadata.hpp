@@ -41,11 +41,6 @@ struct ImageMetadata {
     std::vector<std::pair<std::string, std::string>> entries() const;
 };
 
-/// Returns the name as on the command line: "full", "thick", "thin", "pinhole", ...
-std::string name_of(CameraModel model);
-/// Returns "paths" or "whitted".
-std::string name_of(LightTransport transport);
-
 /// Returns the metadata of a picture that is taken by a camera with these settings. plan, film and denoiser are empty.
 ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings);
 

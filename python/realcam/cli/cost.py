@@ -16,11 +16,10 @@ from .shot_options import load_shot, shot_options
 # Without samples, effects and camera models, which the command itself varies.
 ShotOptions = shot_options(
     "ShotOptions",
-    without=(
-        "resolution", "model", "spp", "noise", "noise_codes", "seconds", "max_spp", "transport", "clamp_cd_m2", "tone",
-        "layers", "effects", "quality", "threshold_px", "threshold_codes", "illuminant", "lens_filter",
-    ),
-)  # fmt: skip
+    without=("resolution", "model"),
+    panels=("Camera", "Scene"),
+    also=("seed", "max_bounces", "threads"),
+)
 
 
 @grouped

@@ -13,6 +13,7 @@ import typer
 from .._core import InputError, Lens, lens_names
 from . import options
 from .completions import completion_of
+from .shot_options import ring_option
 
 LensName = Annotated[
     str,
@@ -44,11 +45,7 @@ FieldsDeg = Annotated[
     ),
 ]
 ThemeName = Annotated[str, typer.Option("--theme", metavar="NAME", help="Colour theme: light or dark")]
-Zoom = Annotated[
-    str | None, typer.Option("--zoom", metavar="NAME", help="Zoom position, by its name in `realcam lens info`")
-]
-
-
+Zoom = Annotated[str | None, ring_option("zoom")]
 LensPath = Annotated[
     list[str] | None,
     typer.Option(
@@ -113,13 +110,8 @@ class File:
 class Rings:
     """Options for the aperture, focus and zoom rings of a lens."""
 
-    f_number: Annotated[
-        float | None, typer.Option("--f-number", metavar="N", help="Close the diaphragm to this f-number")
-    ] = None
-    focus: Annotated[
-        str | None,
-        typer.Option("--focus", metavar="METRES", help="Distance from the object plane to the film in metres, or inf"),
-    ] = None
+    f_number: Annotated[float | None, ring_option("f_number")] = None
+    focus: Annotated[str | None, ring_option("focus_m")] = None
     zoom: Zoom = None
 
     def set(self, lens: Lens) -> Lens:

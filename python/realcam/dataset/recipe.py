@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from .._core import InputError, Sensor, _did_you_mean, _read_toml
+from .._core import InputError, RenderSettings, Sensor, _did_you_mean, _read_toml
 
 MOVES_FOR_S = 1.0  # duration of all motion in a scene, in seconds; every exposure and next picture must lie within it
 LABELS = ("depth", "mask", "motion", "flow")
 # File names have six digits for the picture's number; beyond the other limits a picture takes hours.
-_MAX = {"count": 10**6, "size": 32768, "objects": 1000, "board": 1000, "spp": 1 << 24, "shard_size": 10**6}
+_MAX = {"count": 10**6, "size": 32768, "objects": 1000, "board": 1000, "shard_size": 10**6}
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,8 @@ class Recipe:
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
             object.__setattr__(self, name, _converted(kind, name, getattr(self, name)))
-        for name in ("count", "spp", "shard_size", "square_m", "next_after_s"):
+        RenderSettings(spp=self.spp)  # checks the number of samples
+        for name in ("count", "shard_size", "square_m", "next_after_s"):
             if not getattr(self, name) > 0:
                 raise InputError(f"{name} must be above 0")
         for name, limit in _MAX.items():

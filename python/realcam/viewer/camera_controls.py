@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .._core import Camera, Film, InputError, Lens
 from .pose import Pose
@@ -113,6 +113,30 @@ class CameraControls:
             shutter_opens_s=self.shutter_opens_s,
             readout_time_s=self.readout_time_s,
         )
+
+    def shot_values(self) -> dict[str, Any]:
+        """Returns the settings but the lens by the keys of shot files; without values that are the default or a
+        property of the lens."""
+        values: dict[str, Any] = {
+            "model": self.model,
+            "focus_m": self.focus_m,
+            "film_mm": [self.film.width_mm, self.film.height_mm],
+            "film_shift_mm": list(self.film.shift_mm),
+            "resolution": list(self.film.resolution),
+            "position_m": list(self.pose.position_m),
+            "look_at_m": list(self.pose.look_at_m),
+            "up": list(self.pose.up),
+            "exposure_time_s": self.exposure_time_s,
+            "iso": self.iso,
+        }
+        if self.zoom is not None:
+            values["zoom" if isinstance(self.zoom, str) else "focal_length_mm"] = self.zoom
+        if self.f_number is not None and self.f_number > self.body.f_number:
+            values["f_number"] = self.f_number
+        for key in ("shutter_opens_s", "readout_time_s"):
+            if getattr(self, key) != 0:
+                values[key] = getattr(self, key)
+        return values
 
     @cached_property
     def zooms(self) -> Ring | None:

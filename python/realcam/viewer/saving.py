@@ -12,6 +12,7 @@ import simplejpeg
 import tomlkit
 
 from .._core import InputError, Lens, RenderSettings, Sensor, lens_names
+from .._core import _shot_keys as shot_keys
 from ..image import Image
 from .camera_controls import CameraControls
 from .shot_source import ShotSource
@@ -75,32 +76,18 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
         if key in shot:
             shot[key] = os.path.relpath(source.folder / str(shot[key]), path.absolute().parent)
     contents = {}
+    values = {**controls.shot_values(), "effects": effects}
     lens = controls.lens
     if lens.name in lens_names() and _is_bundled(lens):
-        shot["lens"] = lens.name
+        values["lens"] = lens.name
     else:
         beside = path.with_name(f"{path.stem}-lens.toml")
         contents[beside], _ = lens_content(lens, beside.name)
-        shot["lens"] = f"./{beside.name}"
-    for key in ("blades", "blade_rounding", "blade_rotation_deg", "zoom", "focal_length_mm", "f_number"):
-        shot.pop(key, None)  # described by the lens, or set below
-    for key in ("key", "iso_follows_s", "pose", "camera"):
-        shot.pop(key, None)  # would override the keys set below
-    if controls.zoom is not None:
-        shot["zoom" if isinstance(controls.zoom, str) else "focal_length_mm"] = controls.zoom
-    widest = controls.body.f_number
-    if controls.f_number is not None and controls.f_number > widest:
-        shot["f_number"] = controls.f_number
-    film, pose = controls.film, controls.pose
-    shot["model"] = controls.model
-    shot["focus_m"] = controls.focus_m
-    shot["film_mm"] = [film.width_mm, film.height_mm]
-    shot["film_shift_mm"] = list(film.shift_mm)
-    shot["resolution"] = list(film.resolution)
-    shot["position_m"], shot["look_at_m"], shot["up"] = list(pose.position_m), list(pose.look_at_m), list(pose.up)
-    shot["exposure_time_s"] = controls.exposure_time_s
-    shot["iso"] = controls.iso
-    shot["effects"] = effects
+        values["lens"] = f"./{beside.name}"
+    for key in ("key", "pose", *(key.name for key in shot_keys() if key.group == "Camera")):
+        if key not in values:
+            shot.pop(key, None)  # is described by the lens, has its default, or would override the values
+    shot.update(values)
     if RenderSettings(illuminant="D65").with_(effects=effects).illuminant is None:
         shot.pop("illuminant", None)  # applies only to effects that are off now
         if "lens_filter" in shot:  # loses its colour with them

@@ -235,7 +235,7 @@ def test_a_plan_is_a_value() -> None:
     [
         ({"threshold_px": 0.0}, "above 0"),
         ({"threshold_codes": float("nan")}, "above 0"),
-        ({"quality": "best"}, 'unknown quality "best"; expected draft, photo or reference'),
+        ({"quality": "best"}, 'quality must be draft, photo or reference; it is "best"'),
         ({"effects": {"ghosts", "-ghosts"}}, "both named and left out"),
         ({"distance_m": -10}, "sees no object and no light"),
     ],

@@ -226,7 +226,7 @@ def test_layers_and_progress_go_along(device: str) -> None:
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"spp": 8, "noise": 0.1}, 'noise, noise_codes, seconds and max_spp belong to spp="auto"'),
+        ({"spp": 8, "noise": 0.1}, 'noise, noise_codes, seconds and max_spp need spp "auto"'),
         ({"spp": "all"}, 'spp must be a whole number or "auto"'),
         ({"noise": float("nan")}, "noise must be at least 1e-9"),
         ({"noise": 1e-300}, "noise must be"),

@@ -93,13 +93,6 @@ def test_thresholds_and_threads_of_a_shot(tmp_path: Path) -> None:
     assert (again.threshold_px, again.threshold_codes) == (0.1, 0.25)
 
 
-def test_the_page_has_every_key() -> None:
-    page = (Path(__file__).parents[3] / "docs" / "shot-files.md").read_text(encoding="utf-8")
-    rows = "\n".join(line.split("|")[1] for line in page.splitlines() if line.startswith("| `"))
-    for key, *_ in rc._core._shot_keys():
-        assert f"`{key}`" in rows, key
-
-
 def test_focus_and_stop(tmp_path: Path) -> None:
     base = 'format = 1\nscene = "quad.obj"\nposition_m = [0, 0, 3]\nlook_at_m = [0, 0, 0]\n'
     assert load(tmp_path, base + "focus_m = inf\n").camera.lens.focus_distance_m == np.inf

@@ -64,7 +64,7 @@ def test_a_clamp_cuts_off_what_comes_by_a_bounce_and_is_told() -> None:
 
 def test_wrong_names_and_numbers() -> None:
     scene = corner(rc.Material())
-    with pytest.raises(rc.InputError, match='unknown transport "kajiya"; expected paths or whitted'):
+    with pytest.raises(rc.InputError, match='transport must be paths or whitted; it is "kajiya"'):
         picture(scene, transport="kajiya")
     for clamp in (-1.0, float("nan")):
         with pytest.raises(rc.InputError, match="clamp must be 0"):
