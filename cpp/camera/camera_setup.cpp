@@ -87,6 +87,7 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
                                ? last->axis_irradiance_
                                : static_cast<float>(axis_irradiance(camera.lens));
         if (camera.model == CameraModel::mapped_lens) set_map(tracer, last);
+        set_bundle_motions(last);
         return;
     }
     if (camera.model == CameraModel::polynomial_lens) require_radial_pupil(camera.lens, "the camera model polynomial");
@@ -104,6 +105,7 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
                                 film_path_ends(camera.lens, LightDirection::to_scene));
         view_in_double_ = path_in_double_->view();
     }
+    set_bundle_motions(last);
 }
 
 CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
@@ -127,6 +129,7 @@ CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
     view.thin = thin_lens_of(on_axis, data);
     view.thick = thick_lens_of(on_axis, data);
     if (map_) view.map = map_->view();
+    if (bundle_motions_) view.bundles = bundle_motions_->view();
     view.circle = circle_of_confusion(data.entrance_pupil_position, view.thin, view.thick, lens.film_distance);
     view.axis_irradiance = axis_irradiance_;
     if (pupil_) view.pupil = pupil_->view();
@@ -186,6 +189,7 @@ FilmArea CameraSetup::film_area() const {
 
 double CameraSetup::widest_angle() const {
     const LensSystem& lens = camera_.lens;
+    if (camera_.geometry) return std::min(field_of_view(camera_).diagonal / 2, camera_.geometry->inverse.max_angle);
     if (lens.is_rotational() && (has_real_pupil(camera_.model) || map_)) {
         const double angle = widest_field_angle(lens, film_radius());
         if (std::isfinite(angle)) return angle;
@@ -204,6 +208,14 @@ void CameraSetup::set_map(const PupilTracer& tracer, const CameraSetup* last) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     const double image = static_cast<double>(thin_lens_of(lens, data).image_distance);
     map_ = std::make_shared<const LensMap>(lens, film_radius(), image, data.entrance_pupil_position, tracer);
+}
+
+void CameraSetup::set_bundle_motions(const CameraSetup* last) {
+    if (!camera_.geometry) return;
+    const bool is_unchanged = last && last->bundle_motions_ && last->camera_.geometry == camera_.geometry &&
+                              last->camera_.model == camera_.model && last->has_lens_and_film_of(camera_);
+    bundle_motions_ = is_unchanged ? last->bundle_motions_
+                                   : std::make_shared<const BundleMotions>(camera_, view(camera_.pose.position_m));
 }
 
 CameraFrame CameraSetup::placement(const Affine<double>& scene_from_camera, Vec3d origin_m) {

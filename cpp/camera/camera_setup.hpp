@@ -11,6 +11,7 @@
 #include "effects/effect_tables.hpp"
 #include "effects/entrance_pupil_search.hpp"
 #include "film/camera.hpp"
+#include "models/bundle_motions.hpp"
 #include "models/lens_map.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -73,6 +74,9 @@ private:
     /// Pose in render space.
     static CameraFrame placement(const Affine<double>& scene_from_camera, Vec3d origin_m);
 
+    /// Computes the motions of a calibrated camera's bundles, or reuses those of `last`.
+    void set_bundle_motions(const CameraSetup* last);
+
     /// Sets the view's keyframes and row times; leaves the times 0 if nothing moves.
     void set_times(CameraView& view, bool scene_moves) const;
 
@@ -93,6 +97,7 @@ private:
     std::shared_ptr<const PupilEntryBounds> pupil_entries_;
     float axis_irradiance_ = 0;  ///< ideal models only
     std::shared_ptr<const LensMap> map_;  ///< model mapped_lens only
+    std::shared_ptr<const BundleMotions> bundle_motions_;  ///< calibrated cameras only
 };
 
 /// Cache of the last camera set-up, whose pupil serves the next one if lens and film are equal. Thread-safe.

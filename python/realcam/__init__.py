@@ -89,7 +89,7 @@ if TYPE_CHECKING:
     from . import analysis
     from .accuracy import AccuracyCost, accuracy_cost
     from .analysis.image_simulation import ImageSimulation, image_simulation
-    from .calibration import Calibration, CalibrationFileError, PointStatus
+    from .calibration import Calibration, CalibrationFileError, GeometryError, PointStatus, Vignetting
     from .derivatives import Gradient, RayDerivatives, RayGradient, Variable, backpropagate_rays, ray_derivatives
     from .job import Job, JobStatus
     from .optimisation import (
@@ -123,7 +123,7 @@ _TOOLS = {
     "accuracy": "AccuracyCost accuracy_cost",
     "analysis": "analysis",
     "analysis.image_simulation": "ImageSimulation image_simulation",  # loads scipy
-    "calibration": "Calibration CalibrationFileError PointStatus",
+    "calibration": "Calibration CalibrationFileError GeometryError PointStatus Vignetting",
     "derivatives": "Gradient RayDerivatives RayGradient Variable backpropagate_rays ray_derivatives",
     "job": "Job JobStatus",
     "optimisation": "GlassMatch GlassSearch Operand Optimisation Targets nearest_glasses optimised with_better_glasses",

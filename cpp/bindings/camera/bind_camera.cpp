@@ -71,7 +71,8 @@ keys_of(const Camera& camera) {
 
 Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Triple& position, const Triple& look_at,
                    const Triple& up, double exposure_time_s, double iso, const std::string& model,
-                   double shutter_opens_s, double readout_time_s, const std::vector<Key>& motion) {
+                   double shutter_opens_s, double readout_time_s, const std::vector<Key>& motion,
+                   const std::shared_ptr<CalibratedGeometry>& geometry) {
     Camera camera;
     camera.lens = lens;
     camera.film = film ? *film : default_film(lens, std::nullopt, std::nullopt);
@@ -80,6 +81,7 @@ Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Tripl
     camera.exposure_time_s = exposure_time_s;
     camera.iso = iso;
     camera.shutter = {shutter_opens_s, readout_time_s};
+    camera.geometry = geometry;
     validate(camera);
     if (!motion.empty()) set_motion(camera, motion_from(motion));
     return camera;
@@ -89,7 +91,8 @@ Camera changed_camera(Camera camera, const std::optional<LensSystem>& lens, cons
                       const std::optional<Triple>& position, const std::optional<Triple>& look_at,
                       const std::optional<Triple>& up, std::optional<double> exposure_time_s, std::optional<double> iso,
                       const std::optional<std::string>& model, std::optional<double> shutter_opens_s,
-                      std::optional<double> readout_time_s, const std::optional<std::vector<Key>>& motion) {
+                      std::optional<double> readout_time_s, const std::optional<std::vector<Key>>& motion,
+                      const std::shared_ptr<CalibratedGeometry>& geometry) {
     if (position || look_at || up) camera.motion.clear();
     if (lens) camera.lens = *lens;
     if (film) camera.film = *film;
@@ -101,6 +104,7 @@ Camera changed_camera(Camera camera, const std::optional<LensSystem>& lens, cons
     if (model) camera.model = model_from(*model);
     camera.shutter.opens_s = shutter_opens_s.value_or(camera.shutter.opens_s);
     camera.shutter.readout_time_s = readout_time_s.value_or(camera.shutter.readout_time_s);
+    if (geometry) camera.geometry = geometry;
     if (motion && motion->empty()) camera.motion.clear();
     validate(camera);
     if (motion && !motion->empty()) set_motion(camera, motion_from(*motion));
@@ -167,10 +171,86 @@ Raises InputError.)")
         .def("__repr__", [](const Film& f) { return text_of(f); });
 }
 
+/// Elements of an array, of which each T has `parts` numbers.
+template <class T, int parts, class Number>
+std::vector<T> elements(const InputArray<Number>& array) {
+    const auto count = static_cast<std::size_t>(array.size()) / parts;
+    std::vector<T> result(count);
+    const Number* from = array.data();
+    for (std::size_t i = 0; i < count; ++i) {
+        if constexpr (parts == 3)
+            result[i] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]};
+        else if constexpr (parts == 2)
+            result[i] = {from[2 * i], from[2 * i + 1]};
+        else
+            result[i] = static_cast<T>(from[i]);
+    }
+    return result;
+}
+
+/// Throws InputError unless an array has this number of dimensions and, if `parts` is not 0, of numbers in the last.
+void require_shape(const py::array& array, int dimensions, int parts, const char* name) {
+    if (array.ndim() != dimensions || (parts > 0 && array.shape(dimensions - 1) != parts))
+        throw InputError(std::string(name) + " has the wrong shape");
+}
+
+std::shared_ptr<CalibratedGeometry> make_geometry(const Film& film, double margin, const InputArray<double>& directions,
+                                                  const std::optional<InputArray<float>>& gain,
+                                                  const std::optional<InputArray<bool>>& defined, double max_angle_deg,
+                                                  const InputArray<float>& positions,
+                                                  const std::array<double, 5>& pinhole) {
+    CalibratedGeometry geometry;
+    geometry.film_width_mm = film.width_mm;
+    geometry.film_height_mm = film.height_mm;
+    geometry.film_shift_mm = film.shift_mm;
+    geometry.margin = margin;
+    require_shape(directions, 3, 3, "directions");
+    geometry.columns = static_cast<int>(directions.shape(1)) - 1;
+    geometry.rows = static_cast<int>(directions.shape(0)) - 1;
+    geometry.directions = elements<Vec3d, 3>(directions);
+    if (gain) geometry.gain = elements<float, 1>(*gain);
+    if (defined) {
+        require_shape(*defined, 2, 0, "defined");
+        geometry.mask = {static_cast<int>(defined->shape(1)), static_cast<int>(defined->shape(0)),
+                         elements<std::uint8_t, 1>(*defined)};
+    }
+    require_shape(positions, 3, 2, "positions");
+    geometry.inverse = {static_cast<int>(positions.shape(0)), max_angle_deg * std::numbers::pi / 180,
+                        elements<Vec2f, 2>(positions)};
+    geometry.pinhole = {pinhole[0], pinhole[1], pinhole[2], pinhole[3], pinhole[4]};
+    validate(geometry);
+    return std::make_shared<CalibratedGeometry>(std::move(geometry));
+}
+
+void bind_geometry(py::module_& m) {
+    py::class_<CalibratedGeometry, std::shared_ptr<CalibratedGeometry>> geometry(
+        m, "CalibratedGeometry",
+        "Directions that the points of a camera's picture see from its centre of projection: those of a calibration, "
+        "sampled. Immutable; made by Calibration.camera.");
+    def_value(geometry);
+    geometry
+        .def(py::init(&make_geometry), py::kw_only(), "film"_a, "margin"_a, "directions"_a, "gain"_a = py::none(),
+             "defined"_a = py::none(), "max_angle_deg"_a, "positions"_a, "pinhole"_a,
+             R"(film: the Film, of which only size and shift count.
+directions: (rows + 1, columns + 1, 3), unit vectors in the axes of the camera, x right, y up, z backward, at nodes in
+  uniform steps over the picture and, on every side, `margin` times its size; from the upper left corner.
+gain: (rows + 1, columns + 1), factors of the irradiance. None: 1.
+defined: (mask rows, mask columns), False where the calibration has no ray. None: True.
+positions: (side, side, 2), picture coordinates, from (0, 0) at the upper left corner to (1, 1), of the direction at an
+  angle a to the forward axis and the azimuth p from x to y, at a / max_angle_deg * (cos p, sin p) in [-1, 1]^2.
+pinhole: (focal_x, focal_y, skew, centre_x, centre_y) of the pinhole camera near the axis, for a picture of size 1 x 1.
+Raises InputError.)")
+        .def("__repr__", [](const CalibratedGeometry& g) {
+            return "<realcam.CalibratedGeometry for a film of " + digits(g.film_width_mm) + " x " +
+                   digits(g.film_height_mm) + " mm>";
+        });
+}
+
 }  // namespace
 
 void bind_camera(py::module_& m) {
     bind_film(m);
+    bind_geometry(m);
     m.attr("FieldOfView") = py::module_::import("collections")
                                 .attr("namedtuple")("FieldOfView", py::make_tuple("horizontal", "vertical", "diagonal"),
                                                     "module"_a = "realcam");
@@ -184,6 +264,7 @@ the film, whose centre is film_centre_m; position and look_at stay on the lens's
         .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
              "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
              "model"_a = "full", "shutter_opens_s"_a = 0.0, "readout_time_s"_a = 0.0, "motion"_a = std::vector<Key>(),
+             "geometry"_a = py::none(),
              R"(lens: the Lens. film: a Film; None: that of the lens.
 position, look_at: (x, y, z) in metres, scene. up: the upward direction.
 exposure_time_s: exposure time of each pixel. iso: sensitivity (ISO 12232).
@@ -193,11 +274,12 @@ shutter_opens_s: time in the scene at which the exposure begins. readout_time_s:
   row of pixels to the bottom row.
 motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in increasing order of time, instead of
   position, look_at and up, which then become those at time 0. Between keys the camera moves uniformly.
+geometry: the CalibratedGeometry of a calibration (Calibration.camera) for this film; None: that of the lens.
 Raises InputError.)")
         .def("replace", &changed_camera, py::kw_only(), "lens"_a = py::none(), "film"_a = py::none(),
              "position"_a = py::none(), "look_at"_a = py::none(), "up"_a = py::none(), "exposure_time_s"_a = py::none(),
              "iso"_a = py::none(), "model"_a = py::none(), "shutter_opens_s"_a = py::none(),
-             "readout_time_s"_a = py::none(), "motion"_a = py::none(),
+             "readout_time_s"_a = py::none(), "motion"_a = py::none(), "geometry"_a = py::none(),
              R"(Returns the camera with some properties changed. Arguments as for Camera(); None: unchanged. The film
 stays if the lens changes (see Film.for_lens). A new position, look_at or up removes the motion. Raises InputError.)")
         .def_property_readonly(
@@ -214,6 +296,10 @@ perspective: a rotation about it causes no parallax. None if it lies at infinity
             "(x, y, z), scene: centre of the film; differs from position by Film(shift_mm=...).")
         .def_readonly("lens", &Camera::lens, "The Lens.")
         .def_readonly("film", &Camera::film, "The Film.")
+        .def_property_readonly(
+            "geometry", [](const Camera& c) { return std::const_pointer_cast<CalibratedGeometry>(c.geometry); },
+            "The CalibratedGeometry of a calibrated camera, which is immutable; None: the geometry is that of the "
+            "lens.")
         .def_property_readonly(
             "position", [](const Camera& c) { return triple(c.pose.position_m); },
             "(x, y, z) of the centre of the unshifted film, in metres, scene.")

@@ -6,7 +6,9 @@
 #include <mutex>
 
 #include "../../camera/camera_setup.hpp"
+#include "../../camera/models/chief_rays.hpp"
 #include "../../camera/models/pinhole_camera.hpp"
+#include "../../camera/projection/calibrated_projection.hpp"
 #include "../../camera/projection/projection.hpp"
 #include "../../camera/projection/projection_grid.hpp"
 #include "../../camera/projection/radial_projection.hpp"
@@ -38,6 +40,7 @@ std::shared_ptr<const ProjectionRays> projection_rays_of(const Camera& camera, P
         Vec2<double> film_mm, film_shift_mm;  ///< otherwise: size and shift of the film
         CameraModel model;
         ProjectionRay ray;
+        std::shared_ptr<const CalibratedGeometry> geometry;
         bool operator==(const Key&) const = default;
     };
     static std::mutex mutex;
@@ -45,7 +48,7 @@ std::shared_ptr<const ProjectionRays> projection_rays_of(const Camera& camera, P
     static std::shared_ptr<const ProjectionRays> cached_rays;
     static LastSetup setups;
     validate(camera);
-    Key key = {camera.lens, camera.film.radius_mm(), {}, {}, camera.model, ray};
+    Key key = {camera.lens, camera.film.radius_mm(), {}, {}, camera.model, ray, camera.geometry};
     const bool is_radial = has_radial_pupil(camera.lens) || !has_real_pupil(camera.model);
     if (!is_radial) {
         key.film_mm = {camera.film.width_mm, camera.film.height_mm};
@@ -58,6 +61,7 @@ std::shared_ptr<const ProjectionRays> projection_rays_of(const Camera& camera, P
     // Without motion: the result depends only on lens and film, and a fast motion must not be refused.
     Camera still = camera;
     still.motion.clear();
+    still.geometry = nullptr;
     // Points slightly outside the film are needed to interpolate at its corners.
     constexpr double kMargin = 1.05;
     if (has_real_pupil(camera.model)) {
@@ -71,6 +75,9 @@ std::shared_ptr<const ProjectionRays> projection_rays_of(const Camera& camera, P
         rays = std::make_shared<const RadialProjection>(*setup, ray, loop);
     else
         rays = std::make_shared<const ProjectionGrid>(*setup, ray, loop);
+    if (camera.geometry)
+        rays = std::make_shared<const CalibratedProjection>(std::move(rays),
+                                                            BundleMotions(camera, setup->view(camera.pose.position_m)));
     const std::lock_guard lock(mutex);
     cached_key = std::move(key);
     return cached_rays = std::move(rays);
@@ -137,6 +144,45 @@ Typed<"tuple[NDArray[float64], ...]", py::tuple> rays_through(const Camera& came
     return py::make_tuple(origins, directions);
 }
 
+/// See traced_chief_rays in bind_projection.
+Typed<"tuple[NDArray[float64], NDArray[float64]]", py::tuple> traced_chief_rays(const Camera& camera,
+                                                                                const Doubles& pixels) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const std::int64_t count = row_count(pixels, 2, "pixels");
+    py::array_t<double> origins({count, std::int64_t{3}}), directions({count, std::int64_t{3}});
+    const double* from = pixels.data();
+    double *to_origins = origins.mutable_data(), *to_directions = directions.mutable_data();
+    {
+        const Unlocked unlocked;
+        static LastSetup setups;
+        const auto setup = setups.make(camera, fast_pupil_tracer());
+        const CameraView view = setup->view(camera.pose.position_m);
+        const LensChiefRays chief_rays(camera, view);
+        const Affine<double> scene_from_camera = camera_detail::scene_from_camera(camera.pose);
+        parallel_ray_loop(heed_signals).for_all(static_cast<std::size_t>(count), [&](std::size_t i, std::size_t end) {
+            for (; i < end; ++i) {
+                const Vec2<double> point = camera.film.point_of({from[2 * i], from[2 * i + 1]});
+                const Vec2f film = {static_cast<float>(-point.x), static_cast<float>(-point.y)};
+                std::optional<RayLine> ray = chief_rays.trace({-point.x, -point.y});
+                if (view.bundles.nodes && !is_defined(view.bundles, film)) ray = std::nullopt;
+                if (!ray) ray = RayLine{{kNone, kNone, kNone}, {kNone, kNone, kNone}};
+                Vec3d origin = 0.001 * ray->foot, direction = ray->direction;
+                if (view.bundles.nodes) {
+                    const BundleMotion motion = bundle_motion(view.bundles, film);
+                    origin = moved_point(view.bundles, motion, origin);
+                    direction = rotated(motion.rotation, direction);
+                }
+                origin = scene_from_camera.point(origin);
+                direction = scene_from_camera.direction(direction);
+                const double numbers[] = {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z};
+                std::copy(numbers, numbers + 3, to_origins + 3 * i);
+                std::copy(numbers + 3, numbers + 6, to_directions + 3 * i);
+            }
+        });
+    }
+    return py::make_tuple(origins, directions);
+}
+
 /// Returns the pinhole camera that the lens is to first order. Throws InputError if there is none.
 PinholeCamera pinhole_of(const Camera& camera) {
     const std::optional<PinholeCamera> pinhole = pinhole_camera(camera, pose_at_mid_exposure(camera));
@@ -177,6 +223,10 @@ void bind_projection(py::module_& m) {
     for (const auto& [name, status] : statuses) values[name] = static_cast<int>(status);
     m.attr("ProjectionStatus") =
         py::module_::import("enum").attr("IntEnum")("ProjectionStatus", values, "module"_a = "realcam");
+    m.def("traced_chief_rays", &traced_chief_rays, "camera"_a, "pixels"_a,
+          R"(Returns (origins_m, directions), (N, 3) float64, scene, of the chief rays of pixels (N, 2) in front of the
+camera: each is traced through the lens, or is that of the camera model, and moved as rendering moves it. Origins lie on
+the ray near the centre of projection. NaN for pixels without a chief ray. For a camera that does not move.)");
     py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
         .def("project", &project, "points_m"_a, py::kw_only(), "through"_a = "light", "return_status"_a = false,
              R"(Projects points of the scene to pixels, by real rays at the lens's design wavelength or by the camera

@@ -117,7 +117,9 @@ struct RestoredCheck<LensSystem> {
 template <>
 struct LastEnumerator<CameraModel> : LastIs<CameraModel::full_lens_double> {};
 
-template <OneOf<Film, Camera, Sensor> T>
+template <OneOf<CalibratedGeometry::Mask, CalibratedGeometry::Inverse, CalibratedGeometry::Pinhole> T>
+struct RestoredCheck<T> : AnyMembers {};
+template <OneOf<Film, CalibratedGeometry, Camera, Sensor> T>
 struct RestoredCheck<T> {
     static void check(const T& value) { validate(value); }
 };

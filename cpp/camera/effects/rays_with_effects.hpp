@@ -55,6 +55,7 @@ REALCAM_HD inline void generate_surface_rays(const CameraView& camera, const Sam
         for (int i = 0; i < N; ++i) rays.weight[i] *= passed[i];
     }
     set_camera_rays(camera, inside, rays);
+    move_bundles(camera, film, rays);
 }
 
 /// generate_rays_from with effects. Wavelengths must have been sampled already; the further wavelengths for which

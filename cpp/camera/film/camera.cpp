@@ -83,6 +83,7 @@ void validate(const Camera& camera) {
         throw InputError("the readout time must be a number of seconds from 0 to 1e9");
     validate(camera.pose);
     validate(camera.motion);
+    if (camera.geometry) check_film(*camera.geometry, camera.film);
 }
 
 namespace camera_detail {

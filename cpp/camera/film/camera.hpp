@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "../../math/motion.hpp"
 #include "../../optics/lens/paraxial.hpp"
 #include "../models/camera_view.hpp"
+#include "calibrated_geometry.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -74,6 +76,7 @@ struct Camera {
     double iso = 100;  ///< sensitivity: 10 / iso lux seconds become middle grey
     Shutter shutter;
     std::vector<PoseKey> motion;  ///< keyframes in increasing order of time; empty: the camera does not move
+    std::shared_ptr<const CalibratedGeometry> geometry = nullptr;  ///< that of a calibration; null: the lens's own
 
     bool moves() const { return !motion.empty(); }
     /// Time for which a row of pixels sees the scene, s; 0 without motion blur.

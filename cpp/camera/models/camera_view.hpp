@@ -9,6 +9,7 @@
 #include "../../optics/trace/lens_view.hpp"
 #include "../effects/effect_views.hpp"
 #include "../effects/traced_lights_view.hpp"
+#include "bundle_motion_view.hpp"
 #include "lens_map_view.hpp"
 #include "pixel_pupil.hpp"
 
@@ -93,6 +94,7 @@ struct CameraView : CameraFrame, EffectViews {
     LensView<float> lens;  ///< for light from the film to the scene
     const LensView<double>* lens_in_double;  ///< model full_lens_double; else null
     LensPolynomialView polynomial;  ///< model polynomial_lens; else without coefficients
+    BundleMotionsView bundles;  ///< calibrated cameras; else without nodes
     // Times as fractions of the exposure; 0 if nothing moves during it:
     float row_time;  ///< delay of each row of pixels after the row above
     float exposed_time;  ///< exposure time of each row
@@ -119,6 +121,42 @@ REALCAM_INLINE CameraFrame camera_at(const CameraView& camera, float time) {
             backward};
 }
 
+/// Converts a vector from render space to the axes of a camera, and back.
+REALCAM_INLINE Vec3f to_camera_axes(const CameraFrame& camera, Vec3f v) {
+    return {dot(v, camera.right), dot(v, camera.up), dot(v, camera.backward)};
+}
+REALCAM_INLINE Vec3f from_camera_axes(const CameraFrame& camera, Vec3f v) {
+    return v.x * camera.right + v.y * camera.up + v.z * camera.backward;
+}
+
+/// Moves a frame by the motion of a bundle: the lens that is placed so images the bundle's part of the scene as the
+/// calibrated camera does.
+REALCAM_INLINE CameraFrame moved_frame(const BundleMotionsView& view, const BundleMotion& motion,
+                                       const CameraFrame& camera) {
+    const auto axis = [&](Vec3f unit) { return from_camera_axes(camera, rotated(motion.rotation, unit)); };
+    return {camera.position + from_camera_axes(camera, moved_point(view, motion, Vec3f{0, 0, 0})), axis({1, 0, 0}),
+            axis({0, 1, 0}), axis({0, 0, 1})};
+}
+
+/// Frame of a camera's lens as light from one point of the scene finds it, and the film point of the chief ray of that
+/// point, mm. Without a calibration: the camera's frame for all points; the film point is unused.
+struct LensPlacement : CameraFrame {
+    Vec2f film;
+};
+
+/// `camera`: view, and `frame`, its frame at one time; `towards`: vector of any length, in render space, from the
+/// centre of projection towards the light.
+REALCAM_INLINE LensPlacement placement_towards(const CameraView& camera, const CameraFrame& frame, Vec3f towards) {
+    if (!camera.bundles.nodes) return {frame, {0.0f, 0.0f}};
+    const Vec2f film = film_point_seeing(camera.bundles, normalized(to_camera_axes(frame, towards)));
+    return {moved_frame(camera.bundles, bundle_motion(camera.bundles, film), frame), film};
+}
+
+/// placement_towards for light from a point of render space.
+REALCAM_INLINE LensPlacement placement_for(const CameraView& camera, const CameraFrame& frame, Vec3f point) {
+    return placement_towards(camera, frame, point - (frame.position + from_camera_axes(frame, camera.bundles.centre)));
+}
+
 /// Depth of a point of render space: its distance from the film along the camera's axis, metres.
 REALCAM_INLINE float depth_from(const CameraFrame& camera, Vec3f point) {
     return dot(camera.position - point, camera.backward);
@@ -140,6 +178,9 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     view.lens.free.move_arrays(view.lens.count, move);
     move(view.keys, view.key_count);
     move(view.map.nodes, view.map.count);
+    move(view.bundles.nodes, (view.bundles.columns + 1) * (view.bundles.rows + 1));
+    move(view.bundles.defined, view.bundles.mask_columns * view.bundles.mask_rows);
+    move(view.bundles.positions, view.bundles.side * view.bundles.side);
     move(view.polynomial.coefficients, 2 * LensPolynomialView::kVectors * view.polynomial.terms);
     view.move_arrays(view.lens.count, move);
     view.traced_lights.move_arrays(move);

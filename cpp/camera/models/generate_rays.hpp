@@ -122,6 +122,14 @@ REALCAM_INLINE LensFrameRay thick_lens_ray(const CameraView& camera, Vec2f film,
         {front.x, front.y, 0.0f}, normalized(Vec3f{-out.x, -out.y, -1.0f}), camera.axis_irradiance * cosine2 * cosine2};
 }
 
+/// Ray of an ideal model, one without the real lens's pupil, from a film point (mm) through the centre of the pupil.
+REALCAM_INLINE LensFrameRay ideal_chief_ray(const CameraView& camera, Vec2f film) {
+    const Vec2f centre = {0.0f, 0.0f};  // of the disc that sample_disc makes of the unit square
+    if (camera.model == CameraModel::thick_lens) return thick_lens_ray(camera, film, centre);
+    if (camera.model == CameraModel::mapped_lens) return mapped_lens_ray(camera, film, centre);
+    return thin_lens_ray(camera, film, centre, 0.0f);
+}
+
 /// Transforms a ray from the lens frame to render space and stores it in a lane. If `has_light` is false, stores a
 /// valid ray of weight 0 instead.
 template <int N>
@@ -134,6 +142,26 @@ REALCAM_INLINE void set_camera_ray(const CameraView& camera, CameraRays<N>& rays
                     camera.position + (0.001f * o.x) * camera.right + (0.001f * o.y) * camera.up + z * camera.backward);
     rays.direction.set(lane, d.x * camera.right + d.y * camera.up + d.z * camera.backward);
     rays.weight[lane] = select(has_light, ray.weight, 0.0f);
+}
+
+/// Moves the rays of a calibrated camera with the bundles of their film points, and weights them by the gain there;
+/// those of film points without a calibrated ray are blocked. Rays of other cameras stay.
+template <int N, class Points>
+REALCAM_HD inline void move_bundles(const CameraView& camera, const Points& film, CameraRays<N>& rays) {
+    const BundleMotionsView& bundles = camera.bundles;
+    if (!bundles.nodes) return;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const Vec2f at = film[i];
+        const BundleMotion motion = bundle_motion(bundles, at);
+        const Vec3f origin = to_camera_axes(camera, rays.origin[i] - camera.position),
+                    direction = to_camera_axes(camera, rays.direction[i]);
+        const bool defined = is_defined(bundles, at);
+        rays.origin.set(i, camera.position + from_camera_axes(camera, moved_point(bundles, motion, origin)));
+        rays.direction.set(i, from_camera_axes(camera, rotated(motion.rotation, direction)));
+        rays.weight[i] = select(defined, motion.gain * rays.weight[i], 0.0f);
+        rays.passed[i] = select(defined, rays.passed[i], 0);
+    }
 }
 
 /// Film point of each sample, uniform in its pixel.
@@ -283,11 +311,10 @@ REALCAM_HD inline void generate_polynomial_rays(const CameraView& camera, const 
     }
 }
 
-/// Samples the pupil as seen from given film points and traces the rays through the camera's lens model. `film[lane]`:
-/// film point of a lane, mm. Lanes that are not used, or whose ray is blocked, get a valid ray of weight 0.
+/// generate_rays_from without the motion of calibrated cameras.
 template <LensKind lens_kind, int N, class Points>
-REALCAM_HD inline void generate_rays_from(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
-                                          CameraRays<N>& rays) {
+REALCAM_HD inline void generate_model_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
+                                           CameraRays<N>& rays) {
     if (camera.model == CameraModel::pinhole)
         return generate_ideal_rays(camera, block, film, rays,
                                    [&](Vec2f at, int) { return thin_lens_ray(camera, at, {0.5f, 0.5f}, 0.0f); });
@@ -324,6 +351,15 @@ REALCAM_HD inline void generate_rays_from(const CameraView& camera, const Sample
                 generate_lens_rays_in_double(camera, block, film, u, rays);
             break;
     }
+}
+
+/// Samples the pupil as seen from given film points and traces the rays through the camera's lens model. `film[lane]`:
+/// film point of a lane, mm. Lanes that are not used, or whose ray is blocked, get a valid ray of weight 0.
+template <LensKind lens_kind, int N, class Points>
+REALCAM_HD inline void generate_rays_from(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
+                                          CameraRays<N>& rays) {
+    generate_model_rays<lens_kind>(camera, block, film, rays);
+    move_bundles(camera, film, rays);
 }
 
 /// Samples film and pupil and traces the rays through the lens. The expected value of weight times radiance is the

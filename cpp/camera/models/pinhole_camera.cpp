@@ -1,5 +1,6 @@
 #include "pinhole_camera.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "../../math/matrix2.hpp"
 #include "../../optics/analysis/scene_bundle.hpp"
 #include "../../optics/lens/chief_ray.hpp"
+#include "../../optics/trace/film_frame.hpp"
 #include "../../optics/trace/lens_path.hpp"
 #include "../../optics/trace/lens_trace.hpp"
 
@@ -95,26 +97,46 @@ FilmPinhole pinhole_of_any_lens(const LensSystem& lens) {
 
 }  // namespace
 
+Vec3d centre_of_projection_mm(const Camera& camera) {
+    const Vec3d centre =
+        (camera.lens.is_rotational() ? pinhole_of_rotational_lens(camera) : pinhole_of_any_lens(camera.lens)).centre;
+    if (std::isfinite(centre.x + centre.y + centre.z)) return centre;
+    return {0, 0, -camera_film_position(camera.lens)};
+}
+
 std::optional<PinholeCamera> pinhole_camera(const Camera& camera, const Pose& pose) {
-    const FilmPinhole lens =
-        camera.lens.is_rotational() ? pinhole_of_rotational_lens(camera) : pinhole_of_any_lens(camera.lens);
-    if (!std::isfinite(lens.centre.z) || !std::isfinite(lens.scale.first.x + lens.scale.second.y)) return std::nullopt;
     const Film& film = camera.film;
-    const double columns = film.width / film.width_mm, rows = film.height / film.height_mm;
     PinholeCamera result{};
-    result.focal_x = columns * lens.scale.first.x;
-    result.column_by_y = columns * lens.scale.first.y;
-    result.row_by_x = rows * lens.scale.second.x;
-    result.focal_y = rows * lens.scale.second.y;
-    const Vec2<double> axis = film.pixel_of({lens.middle.x, -lens.middle.y});
-    result.centre_x = axis.x;
-    result.centre_y = axis.y;
+    Vec3d centre_mm;
+    if (camera.geometry) {
+        const CalibratedGeometry& geometry = *camera.geometry;
+        centre_mm = centre_of_projection_mm(camera);
+        result.focal_x = film.width * geometry.pinhole.focal_x;
+        result.column_by_y = film.width * geometry.pinhole.skew;
+        result.focal_y = film.height * geometry.pinhole.focal_y;
+        result.centre_x = film.width * geometry.pinhole.centre_x;
+        result.centre_y = film.height * geometry.pinhole.centre_y;
+    } else {
+        const FilmPinhole lens =
+            camera.lens.is_rotational() ? pinhole_of_rotational_lens(camera) : pinhole_of_any_lens(camera.lens);
+        if (!std::isfinite(lens.centre.z) || !std::isfinite(lens.scale.first.x + lens.scale.second.y))
+            return std::nullopt;
+        const double columns = film.width / film.width_mm, rows = film.height / film.height_mm;
+        centre_mm = lens.centre;
+        result.focal_x = columns * lens.scale.first.x;
+        result.column_by_y = columns * lens.scale.first.y;
+        result.row_by_x = rows * lens.scale.second.x;
+        result.focal_y = rows * lens.scale.second.y;
+        const Vec2<double> axis = film.pixel_of({lens.middle.x, -lens.middle.y});
+        result.centre_x = axis.x;
+        result.centre_y = axis.y;
+    }
     const camera_detail::Axes axes = camera_detail::axes_of(pose);
     result.right = axes.right;
     result.down = -axes.up;
     result.forward = -axes.backward;
-    result.centre_m = pose.position_m +
-                      0.001 * (lens.centre.x * axes.right + lens.centre.y * axes.up + lens.centre.z * axes.backward);
+    result.centre_m =
+        pose.position_m + 0.001 * (centre_mm.x * axes.right + centre_mm.y * axes.up + centre_mm.z * axes.backward);
     result.translation_m = {-dot(result.right, result.centre_m), -dot(result.down, result.centre_m),
                             -dot(result.forward, result.centre_m)};
     return result;
@@ -141,6 +163,14 @@ double picture_angle(const Camera& camera, double image_height_mm) {
 }
 
 FieldOfView field_of_view(const Camera& camera) {
+    if (camera.geometry) {
+        const CalibratedGeometry& geometry = *camera.geometry;
+        // From the axis to either side, because a fisheye may see more than 180 degrees in all.
+        const auto to_axis = [&](double x, double y) { return std::acos(-geometry.direction_at({x, y}).z); };
+        return {to_axis(0, geometry.pinhole.centre_y) + to_axis(1, geometry.pinhole.centre_y),
+                to_axis(geometry.pinhole.centre_x, 0) + to_axis(geometry.pinhole.centre_x, 1),
+                std::max(to_axis(0, 0) + to_axis(1, 1), to_axis(0, 1) + to_axis(1, 0))};
+    }
     const double x = 0.5 * camera.film.width_mm, y = 0.5 * camera.film.height_mm;
     const double right = std::fabs(camera.film.shift_mm.x), up = std::fabs(camera.film.shift_mm.y);
     // Angle between the film point farthest from the axis and the opposite one, which may lie on the same side.
@@ -156,7 +186,7 @@ FieldOfView field_of_view(const Camera& camera) {
 
 std::optional<Vec3d> entrance_pupil_position_m(const Camera& camera) {
     const LensSystem& lens = camera.lens;
-    if (!lens.is_rotational()) {
+    if (camera.geometry || !lens.is_rotational()) {
         const std::optional<PinholeCamera> pinhole = pinhole_camera(camera, camera.pose);
         return pinhole ? std::optional(pinhole->centre_m) : std::nullopt;
     }

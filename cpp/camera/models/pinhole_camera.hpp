@@ -58,6 +58,10 @@ struct PinholeCamera {
     Vec3d centre_m;  ///< centre of projection, in the scene
 };
 
+/// Centre of projection of a camera, in the axes of the camera (x right, y up, z backward), mm from the centre of the
+/// unshifted film: the centre of the lens's entrance pupil, or its front vertex if the pupil lies at infinity.
+Vec3d centre_of_projection_mm(const Camera& camera);
+
 /// Pinhole model of a camera with this pose. Returns std::nullopt if the entrance pupil of the lens lies at infinity:
 /// it has no centre of projection.
 std::optional<PinholeCamera> pinhole_camera(const Camera& camera, const Pose& pose);

@@ -98,15 +98,23 @@ REALCAM_HD inline void rays_at_start(const CameraView& camera, const SampleBlock
         return;
     }
     for (int i = 0; i < N; ++i) {
-        const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f}), middle = {0.0f, 0.0f};
-        LensFrameRay ray = camera.model == CameraModel::thick_lens    ? thick_lens_ray(camera, film, middle)
-                           : camera.model == CameraModel::mapped_lens ? mapped_lens_ray(camera, film, middle)
-                                                                      : thin_lens_ray(camera, film, middle, 0.0f);
+        LensFrameRay ray = ideal_chief_ray(camera, film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f}));
         ray.weight = 1.0f;
         set_camera_ray(camera, rays, i, ray, block.used[i] != 0);
         rays.sampled[i] = rays.passed[i] = block.used[i];
     }
 }
+
+/// Centre of each lane's pixel on the film.
+template <int N>
+struct PixelCentres {
+    const CameraView& camera;
+    const SampleBlock<N>& block;
+
+    REALCAM_INLINE Vec2f operator[](int lane) const {
+        return film_point(camera, block.column[lane], block.row[lane], {0.5f, 0.5f});
+    }
+};
 
 }  // namespace pixel_centre_rays_detail
 
@@ -117,7 +125,10 @@ REALCAM_HD inline void rays_at_start(const CameraView& camera, const SampleBlock
 template <int N>
 REALCAM_HD inline void pixel_centre_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
                                          float (&times)[N]) {
-    pixel_centre_rays_detail::rays_at_start(camera, block, rays);
+    using namespace pixel_centre_rays_detail;
+    rays_at_start(camera, block, rays);
+    move_bundles(camera, PixelCentres<N>{camera, block}, rays);
+    for (int i = 0; i < N; ++i) rays.weight[i] = rays.weight[i] > 0.0f ? 1.0f : 0.0f;
     set_times(camera, block, times, [](int) { return 0.5f; });
     move_rays(camera, times, rays);
 }

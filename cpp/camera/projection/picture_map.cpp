@@ -3,12 +3,14 @@
 #include <cmath>
 
 #include "../../math/hypotenuse.hpp"
+#include "../models/bundle_motions.hpp"
 #include "../models/pixel_centre_rays.hpp"
 
 namespace realcam {
 
 PictureMap::PictureMap(const CameraView& camera)
-    : pixels_per_mm_x_(0.5 * camera.width / static_cast<double>(camera.film_half_width)),
+    : bundles_(camera.bundles),
+      pixels_per_mm_x_(0.5 * camera.width / static_cast<double>(camera.film_half_width)),
       pixels_per_mm_y_(0.5 * camera.height / static_cast<double>(camera.film_half_height)),
       axis_{0.5 * camera.width + pixels_per_mm_x_ * static_cast<double>(camera.film_centre.x),
             0.5 * camera.height - pixels_per_mm_y_ * static_cast<double>(camera.film_centre.y)} {
@@ -17,6 +19,7 @@ PictureMap::PictureMap(const CameraView& camera)
     static_cast<CameraFrame&>(along) = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     along.keys = nullptr;
     along.key_count = 0;
+    along.bundles = {};
     const float corner = hypotenuse(camera.film_half_width + std::fabs(camera.film_centre.x),
                                     camera.film_half_height + std::fabs(camera.film_centre.y));
     along.film_centre = {0, 0};
@@ -40,11 +43,20 @@ PictureMap::PictureMap(const CameraView& camera)
 }
 
 std::optional<Vec2<double>> PictureMap::pixel_of(Vec3d point, bool is_direction) const {
+    const std::optional<Vec2<double>> film =
+        bundles_.nodes ? calibrated_film_point(bundles_, point, is_direction,
+                                               [&](Vec3d moved) { return lens_film_point(moved, is_direction); })
+                       : lens_film_point(point, is_direction);
+    if (!film) return std::nullopt;
+    return Vec2<double>{axis_.x - pixels_per_mm_x_ * film->x, axis_.y + pixels_per_mm_y_ * film->y};
+}
+
+std::optional<Vec2<double>> PictureMap::lens_film_point(Vec3d point, bool is_direction) const {
     const double radius = hypotenuse(point.x, point.y);
     const std::optional<double> film = film_radius(radius, point.z, is_direction);
     if (!film) return std::nullopt;
     const double scale = radius > 0 ? *film / radius : 0;
-    return Vec2<double>{axis_.x + pixels_per_mm_x_ * scale * point.x, axis_.y - pixels_per_mm_y_ * scale * point.y};
+    return Vec2<double>{-scale * point.x, -scale * point.y};
 }
 
 double PictureMap::signed_distance(const Ray& ray, double radius, double z, bool is_direction) {

@@ -7,7 +7,7 @@
 namespace REALCAM_NAMESPACE {
 
 /// Projects scene points into a camera's picture by its pixel-centre rays, which pass through the centre of the pupil.
-/// The lens is rotationally symmetric, so the rays along one film radius represent all.
+/// The lens is rotationally symmetric, so the rays along one film radius represent all. A calibrated camera moves them.
 class PictureMap {
 public:
     /// `camera`: its arrays must be in host memory.
@@ -36,6 +36,10 @@ private:
     /// Returns std::nullopt if no ray does.
     std::optional<double> film_radius(double radius, double z, bool is_direction) const;
 
+    /// Film point, mm in the lens's axes, of a point for the lens without a calibration.
+    std::optional<Vec2<double>> lens_film_point(Vec3d point, bool is_direction) const;
+
+    BundleMotionsView bundles_;
     double pixels_per_mm_x_, pixels_per_mm_y_;
     Vec2<double> axis_;  ///< pixel coordinates of the lens's axis
     std::vector<Ray> rays_;  ///< in order of increasing film radius

@@ -101,6 +101,27 @@ REALCAM_INLINE void start_film_rays(const CameraView& camera, const GhostView& g
     }
 }
 
+/// Moves the rays of ghosts of a calibrated camera to where it sees the light of their directions: with the bundle
+/// whose chief ray has, in front of the lens, the direction of the ghost's ray.
+template <int N>
+REALCAM_INLINE void move_ghosts(const CameraView& camera, CameraRays<N>& rays) {
+    const BundleMotionsView& bundles = camera.bundles;
+    if (!bundles.nodes) return;
+    constexpr int kIterations = 4;  // each reduces the error by the change of the rotation over one radian of the field
+    for (int i = 0; i < N; ++i) {
+        const Vec3f direction = to_camera_axes(camera, rays.direction[i]),
+                    origin = to_camera_axes(camera, rays.origin[i] - camera.position);
+        BundleMotion motion{};
+        Vec3f seen = direction;
+        for (int k = 0; k < kIterations; ++k) {
+            motion = bundle_motion(bundles, film_point_seeing(bundles, seen));
+            seen = rotated(motion.rotation, direction);
+        }
+        rays.origin.set(i, camera.position + from_camera_axes(camera, moved_point(bundles, motion, origin)));
+        rays.direction.set(i, from_camera_axes(camera, seen));
+    }
+}
+
 }  // namespace gather_ghosts_detail
 
 /// Traces N samples of a block, from its sample `first` on, and calls splat(pixel, irradiance, dither) as splat_ghosts
@@ -135,6 +156,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
         camera_rays.sampled[i] = 1;
     }
     set_camera_rays(camera, film.rays, camera_rays);
+    move_ghosts(camera, camera_rays);
     PathState<N> path;
     PathResults<N> results;
     if constexpr (scene_kind == SceneKind::any) expose_rays(camera, film.block, camera_rays, path.rays.time);

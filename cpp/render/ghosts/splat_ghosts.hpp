@@ -16,25 +16,19 @@ namespace ghost_dimension {
 inline constexpr std::uint32_t light = 1, entry = 2, time = 3, diffraction = 4;
 }
 
-/// Frame of the camera's lens in render space at one time. Lens coordinates: see ARCHITECTURE.md.
-struct LensFrame {
-    CameraFrame camera;
-    float front_vertex_m;
+/// Converts a point of the lens, in mm relative to its front vertex, to render space. `lens`: the camera's frame, or
+/// its LensPlacement. Lens coordinates: see ARCHITECTURE.md.
+REALCAM_INLINE Vec3f point_in_scene(const CameraFrame& lens, float front_vertex_m, Vec3f lens_mm) {
+    return lens.position + (0.001f * lens_mm.x) * lens.right + (0.001f * lens_mm.y) * lens.up +
+           (0.001f * lens_mm.z - front_vertex_m) * lens.backward;
+}
 
-    /// Converts a vector from render space to the axes of the lens.
-    REALCAM_INLINE Vec3f direction(Vec3f in_scene) const {
-        return {dot(in_scene, camera.right), dot(in_scene, camera.up), dot(in_scene, camera.backward)};
-    }
-    /// Converts a point in mm, relative to the front vertex, to render space.
-    REALCAM_INLINE Vec3f point_in_scene(Vec3f lens_mm) const {
-        return camera.position + (0.001f * lens_mm.x) * camera.right + (0.001f * lens_mm.y) * camera.up +
-               (0.001f * lens_mm.z - front_vertex_m) * camera.backward;
-    }
-};
-
-/// Returns the lens frame at a time, as a fraction of the exposure.
-REALCAM_INLINE LensFrame lens_frame(const CameraView& camera, float time) {
-    return {camera_at(camera, time), camera.front_vertex_m};
+/// Vector in render space from the centre of projection towards a light that was sampled at `receiver`.
+REALCAM_INLINE Vec3f towards_light(const CameraView& camera, const CameraFrame& frame, Vec3f receiver,
+                                   const LightSample& light) {
+    if (!(light.distance < kFarAway)) return light.direction;
+    return receiver + light.distance * light.direction -
+           (frame.position + from_camera_axes(frame, camera.bundles.centre));
 }
 
 /// Returns the index of the pixel at a film point, mm; -1 if the point lies outside the film.
@@ -71,6 +65,8 @@ struct GhostSamples {
     Lanes<float, N> variable;  ///< dispersion variable of that wavelength (WavelengthVariable)
     Lanes<float, N> time;  ///< fraction of the exposure
     LightPick lights[N];
+    Vec3Lanes<float, N> towards;  ///< see placement_towards
+    Vec2Lanes<float, N> chief_film;  ///< film point of the light's chief ray (LensPlacement), mm
     Vec3Lanes<float, N> from;  ///< unit, towards the light from the front vertex, in the lens's axes
     LensRays<float, N> rays;  ///< in the lens frame, mm: in front of the lens, then (after the trace) behind it
     Lanes<float, N> density;  ///< density of the entry point, per mm^2
@@ -100,19 +96,25 @@ REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camer
     for (int i = 0; i < N; ++i)
         u.set(i, sample_2d(stream, first + static_cast<std::uint32_t>(i), ghost_dimension::light));
     for (int i = 0; i < N; ++i) {
-        const LensFrame frame = lens_frame(camera, samples.time[i]);
-        const LightReceiver middle{front_vertex(frame.camera, frame.front_vertex_m), {0, 0, 0}, samples.time[i]};
+        const CameraFrame frame = camera_at(camera, samples.time[i]);
+        const LightReceiver middle{front_vertex(frame, camera.front_vertex_m), {0, 0, 0}, samples.time[i]};
         LightPick& light = samples.lights[i];
         light = pick_light(view, middle, light_kinds(view, SkySampling::chosen, middle), 0, u[i], samples.number[i]);
-        Vec3f from = {0, 0, 1};  // behind the lens
+        Vec3f from = {0, 0, 1}, towards = from;  // behind the lens
+        Vec2f chief_film = {0, 0};
         samples.light_density[i] = kDelta;
         if (light.probability > 0.0f) {
             const LightSample sample = sample_picked<scene_kind>(view, middle, light);
-            from = frame.direction(sample.direction);
+            towards = towards_light(camera, frame, middle.position, sample);
+            const LensPlacement placement = placement_towards(camera, frame, towards);
+            chief_film = placement.film;
+            from = to_camera_axes(placement, sample.direction);
             // An area light seen edge-on has the density kDelta and emits no light to the lens.
             if (light.kind == LightKind::area || light.kind == LightKind::environment)
                 samples.light_density[i] = sample.pdf < kDelta ? light.probability * sample.pdf : 0.0f;
         }
+        samples.towards.set(i, towards);
+        samples.chief_film.set(i, chief_film);
         samples.from.set(i, from);
     }
 }
@@ -190,12 +192,13 @@ REALCAM_INLINE void start_at_lights(const SceneView& view, const CameraView& cam
     LensRays<float, N>& rays = samples.rays;
     for (int i = 0; i < N; ++i) {
         if (rays.status[i] != 0) continue;
-        const LensFrame frame = lens_frame(camera, samples.time[i]);
-        const LightReceiver receiver{frame.point_in_scene(rays.origin[i]), {0, 0, 0}, samples.time[i]};
+        const LensPlacement lens = placement_towards(camera, camera_at(camera, samples.time[i]), samples.towards[i]);
+        const LightReceiver receiver{
+            point_in_scene(lens, camera.front_vertex_m, rays.origin[i]), {0, 0, 0}, samples.time[i]};
         const LightSample light = sample_picked<scene_kind>(view, receiver, samples.lights[i]);
         // A near light has another direction here than at the front vertex, and the entry plane is perpendicular to the
         // latter.
-        const Vec3f to_light = frame.direction(light.direction);
+        const Vec3f to_light = to_camera_axes(lens, light.direction);
         const float cosine = dot(to_light, samples.from[i]);
         if (is_black(light.irradiance) || !(cosine > 0.0f)) {
             rays.status[i] = static_cast<int>(RayStatus::vignetted);
@@ -244,7 +247,13 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
         pixel[i] = -1;
         if (samples.rays.status[i] != 0) continue;
         Vec2f film = landing_on_film<lens_kind>(camera, samples.rays.origin[i], samples.rays.direction[i]);
-        const float irradiance = irradiance_of_flux<lens_kind>(camera, film);
+        float irradiance = irradiance_of_flux<lens_kind>(camera, film);
+        if (camera.bundles.nodes && ghosts.light != GhostLight::of_lights) {
+            const PictureLanding landing = picture_landing(camera.bundles, samples.chief_film[i], film);
+            film = landing.film;
+            irradiance *=
+                is_defined(camera.bundles, film) ? landing.area * bundle_motion(camera.bundles, film).gain : 0;
+        }
         if constexpr (has_wavelengths) {
             if (ghosts.light != GhostLight::of_lights && camera.effects.diffraction) {
                 const std::uint32_t sample = first + static_cast<std::uint32_t>(i);

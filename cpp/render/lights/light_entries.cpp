@@ -42,12 +42,16 @@ LightEntries::LightEntries(const SceneView& scene, const CameraView& camera, con
       pupil_entries_(setup.pupil_entries()),
       front_reach_(entry_reach(setup.camera().lens)) {}
 
-Vec3f LightEntries::sample_position(const LightGroup& group, std::uint32_t index) const {
+LightEntries::LightPosition LightEntries::sample_position(const LightGroup& group, std::uint32_t index) const {
     const Vec2f u = sample_joint_2d(0, index, 1), v = sample_joint_2d(0, index, 2);
     const float time = v.x * splat_ghosts_detail::all_times(camera_);
-    const splat_ghosts_detail::LensFrame frame = splat_ghosts_detail::lens_frame(camera_, time);
+    const CameraFrame frame = camera_at(camera_, time);
     const std::int32_t light = group.lights[static_cast<std::size_t>(v.y * static_cast<float>(group.lights.size()))];
-    if (group.kind == TracedLightKind::sun) return frame.direction(-scene_.suns[light].direction);
+    if (group.kind == TracedLightKind::sun) {
+        const Vec3f towards = -scene_.suns[light].direction;
+        const LensPlacement placement = placement_towards(camera_, frame, towards);
+        return {to_camera_axes(placement, towards), placement.film};
+    }
     Vec3f position;
     if (group.kind == TracedLightKind::point) {
         position = point_light_at(scene_, scene_.points[light], time).position;
@@ -56,7 +60,9 @@ Vec3f LightEntries::sample_position(const LightGroup& group, std::uint32_t index
         const Vec2f at = sample_triangle(u);
         position = triangle.corner + at.x * triangle.edge_u + at.y * triangle.edge_v;
     }
-    return 1000.0f * frame.direction(position - front_vertex(frame.camera, frame.front_vertex_m));
+    const LensPlacement placement = placement_for(camera_, frame, position);
+    const Vec3f from_front = position - front_vertex(placement, camera_.front_vertex_m);
+    return {1000.0f * to_camera_axes(placement, from_front), placement.film};
 }
 
 LightEntries::Probe LightEntries::probe(const Positions& positions, const TracedLight& light, const PlaneRectangle& in,
@@ -76,7 +82,7 @@ LightEntries::Probe LightEntries::probe(const Positions& positions, const Traced
             const auto index = static_cast<std::uint32_t>(first + k);
             entries[k] = in.at(sample_joint_2d(0, index, 0));
             const Vec3f entry = entries[k].x * plane.along + entries[k].y * plane.across,
-                        position = positions[index % positions.size()];
+                        position = positions[index % positions.size()].from_front;
             const Vec3f direction = light.kind == TracedLightKind::sun ? -position : entry - position;
             rays.origin.set(k, entry);
             rays.direction.set(k, normalized(direction));
@@ -85,7 +91,12 @@ LightEntries::Probe LightEntries::probe(const Positions& positions, const Traced
         tracer_.trace(to_film_, rays);
         for (int k = 0; k < kBlock; ++k) {
             if (rays.status[k] != 0) continue;
-            const Vec2f landing = film_surface(camera_).landing(rays.origin[k], rays.direction[k]);
+            Vec2f landing = film_surface(camera_).landing(rays.origin[k], rays.direction[k]);
+            if (camera_.bundles.nodes)
+                landing = picture_landing(camera_.bundles,
+                                          positions[static_cast<std::size_t>(first + k) % positions.size()].chief_film,
+                                          landing)
+                              .film;
             const Vec2f film = {landing.x - camera_.film_centre.x, landing.y - camera_.film_centre.y};
             // A margin of one pixel, for other wavelengths and for diffraction.
             if (!(std::fabs(film.x) <= camera_.film_half_width + 1 / columns_per_mm) ||
@@ -106,7 +117,7 @@ std::optional<FoundLight> LightEntries::find(const LightGroup& group) const {
     Vec3f middle = {0, 0, 0};
     for (std::size_t k = 0; k < positions.size(); ++k) {
         positions[k] = sample_position(group, static_cast<std::uint32_t>(k));
-        middle = middle + positions[k];
+        middle = middle + positions[k].from_front;
     }
     if (!(dot(middle, middle) > 0) || !std::isfinite(dot(middle, middle))) return std::nullopt;
     light.from = normalized(middle);

@@ -33,12 +33,17 @@ private:
         PlaneRectangle entries{}, film{};  ///< bounds of the hits: at the entry, mm, and on the film, pixels
     };
 
+    /// Point on a light.
+    struct LightPosition {
+        Vec3f
+            from_front;  ///< in the lens frame relative to the front vertex, mm; for a sun, the unit vector towards it
+        Vec2f chief_film;  ///< film point of its chief ray (LensPlacement), mm
+    };
     /// Points on the lights of a group, as sample_position returns them.
-    using Positions = std::array<Vec3f, 64>;
+    using Positions = std::array<LightPosition, 64>;
 
-    /// Samples a point on the group's lights, in the lens frame relative to the front vertex, mm; for a sun, returns
-    /// the unit vector towards it. `index`: of the sample.
-    Vec3f sample_position(const LightGroup& group, std::uint32_t index) const;
+    /// Samples a point on the group's lights. `index`: of the sample.
+    LightPosition sample_position(const LightGroup& group, std::uint32_t index) const;
     /// Traces `rays` rays from the positions through random points of the rectangle `in` of the light's entry plane.
     Probe probe(const Positions& positions, const TracedLight& light, const PlaneRectangle& in, int rays) const;
 

@@ -78,13 +78,22 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
             if constexpr (has_wavelengths) wavelength[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
         }
         const Vec2f entry_mm = light.entries.at(sample_joint_2d(stream, sample, traced_dimension::entry));
-        CameraFrame placement = camera;
-        if constexpr (scene_kind == SceneKind::any) placement = camera_at(camera, samples.time[i]);
+        CameraFrame frame = camera;
+        if constexpr (scene_kind == SceneKind::any) frame = camera_at(camera, samples.time[i]);
+        const auto sampled_from = [&](Vec3f point) {
+            return sample_traced_light<scene_kind>(view, lights, light_index, light, point, samples.time[i],
+                                                   sample_joint_2d(stream, sample, traced_dimension::point));
+        };
+        LensPlacement placement{frame, {0.0f, 0.0f}};
+        if (camera.bundles.nodes) {
+            const Vec3f front = front_vertex(frame, camera.front_vertex_m);
+            placement = placement_towards(
+                camera, frame, splat_ghosts_detail::towards_light(camera, frame, front, sampled_from(front).sample));
+        }
+        samples.chief_film.set(i, placement.film);
         const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);
         const Vec3f entry = plane.origin + (0.001f * entry_mm.x) * plane.along + (0.001f * entry_mm.y) * plane.across;
-        const TracedLightSample traced =
-            sample_traced_light<scene_kind>(view, lights, light_index, light, entry, samples.time[i],
-                                            sample_joint_2d(stream, sample, traced_dimension::point));
+        const TracedLightSample traced = sampled_from(entry);
         const float cosine = dot(traced.sample.direction, plane.normal);
         samples.rays.status[i] = static_cast<int>(RayStatus::vignetted);
         if (is_black(traced.sample.irradiance) || !(cosine > 0.0f)) continue;
@@ -93,9 +102,8 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
         const float weight = traced.can_be_hit ? 1.0f - mis_weight(1.0f, traced.density_ratio / cosine) : 1.0f;
         const float scale = weight * cosine * light.entries.area() / light.probability;
         samples.color.set(i, bounded_light(scale * traced.sample.irradiance));
-        const splat_ghosts_detail::LensFrame frame{placement, camera.front_vertex_m};
-        samples.rays.origin.set(i, frame.direction(entry_mm.x * plane.along + entry_mm.y * plane.across));
-        samples.rays.direction.set(i, -frame.direction(traced.sample.direction));
+        samples.rays.origin.set(i, to_camera_axes(placement, entry_mm.x * plane.along + entry_mm.y * plane.across));
+        samples.rays.direction.set(i, -to_camera_axes(placement, traced.sample.direction));
         splat_ghosts_detail::set_shadow_ray(entry, traced.sample, i, samples);
     }
 }

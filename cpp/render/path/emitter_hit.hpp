@@ -56,6 +56,7 @@ REALCAM_INLINE float camera_hit_weight(const SceneView& scene, const CameraView&
     const float time = time_of<scene_kind>(path, slot);
     CameraFrame placement = camera;
     if constexpr (scene_kind == SceneKind::any) placement = camera_at(camera, time);
+    placement = placement_for(camera, placement, point.position);
     const float area_m2 = area_light_at<scene_kind>(scene, area, time).area;
     const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);
     const Vec3f direction = path.rays.direction[slot];

@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._core import InputError
+from .._core import Camera, InputError, Lens
 from . import maps, rectification, resampling
 from .arrays import Array, Integers, picture_size, rows_of
+from .camera import GeometryError, Vignetting, calibrated_camera, geometry_error
 from .load import load, load_all
 from .models import opencv_models
 from .models.central import shift
@@ -197,6 +199,36 @@ class Calibration(StatedCamera):
         T: (4, 4), from this camera's axes to the other's, metres. Raises InputError.
         """
         return rectification.rectified(self.camera_matrix, other.camera_matrix, self.size, rows_of(T, 4, "T"))
+
+    def camera(
+        self,
+        lens: Lens | str = "auto",
+        *,
+        film_width_mm: float | None = None,
+        f_number: float | None = None,
+        focus_m: float | None = None,
+        vignetting: Vignetting | None = None,
+        scene_from_camera: ArrayLike | None = None,
+        **settings: Any,
+    ) -> Camera:
+        """Returns a realcam.Camera with the calibration's geometry, exact at every distance, and the light of a lens.
+
+        The chief ray of each pixel passes through one centre of projection in the calibrated direction, and the lens's
+        bundle moves with it: blur, cat's eyes, aberrations, colours and ghosts stay those of the lens.
+        lens: a Lens, the name or file of one, or "auto": the bundled lens whose field resembles the calibration most,
+        scaled to its focal length. film_width_mm: None: as the calibration states it; else such that the focal length
+        of a given lens stays; else 7.2. f_number, focus_m: None: those of the lens. vignetting: in place of the lens's
+        own falloff. scene_from_camera: (4, 4) pose of the centre of projection, metres, axes as in project.
+        settings: further arguments of realcam.Camera, such as position and look_at, exposure_time_s, iso, model.
+        Raises InputError, also if "auto" finds no lens within 10 degrees everywhere.
+        """
+        return calibrated_camera(
+            self, lens, film_width_mm, f_number, focus_m, vignetting, scene_from_camera, settings
+        )
+
+    def geometry_error(self, camera: Camera) -> GeometryError:
+        """Measures with traced rays how far a camera's geometry is from the calibration. Raises InputError."""
+        return geometry_error(self, camera)
 
     def _mark_outside(self, pixels: Array, status: Integers) -> None:
         """Replaces OK by OUTSIDE_PICTURE beside the picture, or by NO_PROJECTION where the model ends."""

@@ -107,7 +107,8 @@ REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N
                                           camera.coatings.to_film, variable, wavelengths.passed[step]);
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
-            const Vec2f on_film = landing_on_film<lens_kind>(camera, back.origin[i], back.direction[i]);
+            Vec2f on_film = landing_on_film<lens_kind>(camera, back.origin[i], back.direction[i]);
+            if (camera.bundles.nodes) on_film = picture_landing(camera.bundles, film[i], on_film).film;
             share(camera, block, i, step, back.status[i] == 0, film.landing(i, on_film, nm[i]), wavelengths);
         }
     }

@@ -1,0 +1,48 @@
+#include "calibrated_projection.hpp"
+
+#include <utility>
+
+namespace realcam {
+namespace {
+
+/// Converts a film point between the axes of the developed picture and those of the lens, which inverts the picture.
+Vec2<double> inverted(Vec2<double> film) {
+    return {-film.x, -film.y};
+}
+
+Vec2f in_float(Vec2<double> film) {
+    return {static_cast<float>(film.x), static_cast<float>(film.y)};
+}
+
+constexpr double kMetre_mm = 1000;
+
+}  // namespace
+
+CalibratedProjection::CalibratedProjection(std::shared_ptr<const ProjectionRays> lens, BundleMotions motions)
+    : lens_(std::move(lens)), motions_(std::move(motions)) {}
+
+std::optional<FilmProjection> CalibratedProjection::ray(Vec2<double> film) const {
+    const BundleMotionsView view = motions_.view();
+    const Vec2f at = in_float(inverted(film));
+    const std::optional<FilmProjection> ray = lens_->ray(film);
+    if (!ray || !is_defined(view, at)) return std::nullopt;
+    const BundleMotion motion = bundle_motion(view, at);
+    const float central_gain = bundle_motion(view, {0, 0}).gain;
+    return FilmProjection{kMetre_mm * moved_point(view, motion, (1 / kMetre_mm) * ray->origin),
+                          rotated(motion.rotation, ray->direction),
+                          ray->light * static_cast<double>(motion.gain / central_gain)};
+}
+
+std::optional<Vec2<double>> CalibratedProjection::project(Vec3d point) const {
+    const BundleMotionsView view = motions_.view();
+    const std::optional<Vec2<double>> film =
+        calibrated_film_point(view, (1 / kMetre_mm) * point, false, [&](Vec3d moved) -> std::optional<Vec2<double>> {
+            const std::optional<Vec2<double>> landing = lens_->project(kMetre_mm * moved);
+            if (!landing) return std::nullopt;
+            return inverted(*landing);
+        });
+    if (!film || !is_defined(view, in_float(*film))) return std::nullopt;
+    return inverted(*film);
+}
+
+}  // namespace realcam

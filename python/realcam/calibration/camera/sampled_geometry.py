@@ -1,0 +1,119 @@
+"""A calibration sampled for rendering: directions over the picture, their inverse, and where there are none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.ndimage import distance_transform_edt
+
+from ..._core import CalibratedGeometry, Film, InputError
+from ..arrays import Array
+from ..status import PointStatus
+
+if TYPE_CHECKING:
+    from ..calibration import Calibration
+
+MARGIN = 0.1  # of the picture's size, on every side: defocused light beside the picture falls into it
+_INVERSE_SIDE = 257  # nodes along a side of the grid of positions
+_MAX_MASK_SIDE = 1024  # cells along the longer side of the mask
+_EXTRAPOLATED_CELLS = 3  # beyond the border of the calibrated directions
+
+
+def sampled_geometry(
+    calibration: Calibration, film: Film, columns: int, gain: Callable[[Array], Array] | None = None
+) -> CalibratedGeometry:
+    """Samples a calibration for a film, at the nodes of a grid with this number of columns of cells.
+
+    gain: function of pixels (..., 2) that returns factors of the irradiance. Raises InputError if no pixel has a ray.
+    """
+    width, height = calibration.size
+    pixels = node_pixels(calibration, columns, max(1, round(columns * height / width)))
+    directions = _rays(calibration, pixels)
+    is_defined = np.isfinite(directions[..., 0])
+    if not is_defined.any():
+        raise InputError("the calibration has no ray for any pixel of its picture")
+    directions = _continued(directions, is_defined)
+    max_angle = float(np.arccos(np.clip(-directions[is_defined][:, 2], -1, 1)).max())
+    (focal_x, skew, centre_x), (_, focal_y, centre_y) = calibration.camera_matrix[:2]
+    return CalibratedGeometry(
+        film=film,
+        margin=MARGIN,
+        directions=directions,
+        gain=None if gain is None else gain(pixels).astype(np.float32),
+        defined=_mask(calibration),
+        max_angle_deg=float(np.degrees(max_angle)),
+        positions=_positions(calibration, max_angle),
+        pinhole=(focal_x / width, focal_y / height, skew / width, centre_x / width, centre_y / height),
+    )
+
+
+def node_pixels(calibration: Calibration, columns: int, rows: int) -> Array:
+    """Returns the pixels (rows + 1, columns + 1, 2) of the nodes of a grid over the picture with its margin."""
+    width, height = calibration.size
+    x, y = np.linspace(-MARGIN, 1 + MARGIN, columns + 1), np.linspace(-MARGIN, 1 + MARGIN, rows + 1)
+    return np.stack(np.meshgrid(x * width, y * height), axis=-1)
+
+
+def _rays(calibration: Calibration, pixels: Array) -> Array:
+    """Returns the directions of pixels (..., 2) in the camera's axes (x right, y up, z backward); NaN for none."""
+    directions, _ = calibration.ray(pixels.reshape(-1, 2))
+    return (directions * (1, -1, -1)).reshape(*pixels.shape[:-1], 3)
+
+
+def _continued(directions: Array, is_defined: np.ndarray) -> Array:
+    """Returns unit vectors everywhere: extrapolated linearly near the defined ones, and of the nearest node beyond."""
+    continued, known = directions.copy(), is_defined.copy()
+    for _ in range(_EXTRAPOLATED_CELLS):
+        total, count = np.zeros_like(continued), np.zeros(known.shape)
+        for axis in (0, 1):
+            for step in (1, -1):
+                near, far = _shifted(continued, step, axis), _shifted(continued, 2 * step, axis)
+                is_near, is_far = _shifted(known, step, axis), _shifted(known, 2 * step, axis)
+                both = is_near & is_far & ~known
+                total[both] += 2 * near[both] - far[both]
+                count[both] += 1
+        found = count > 0
+        continued[found] = total[found] / count[found][:, None]
+        known |= found
+    if not known.all():
+        nearest = distance_transform_edt(~known, return_distances=False, return_indices=True)
+        continued = continued[tuple(nearest)]
+    return continued / np.linalg.norm(continued, axis=-1, keepdims=True)
+
+
+def _shifted(values: np.ndarray, step: int, axis: int) -> np.ndarray:
+    """Returns values[i + step] along an axis; 0 or False beyond the ends."""
+    result = np.roll(values, -step, axis)
+    beyond = [slice(None)] * values.ndim
+    beyond[axis] = slice(-step, None) if step > 0 else slice(None, -step)
+    result[tuple(beyond)] = 0
+    return result
+
+
+def _mask(calibration: Calibration) -> np.ndarray | None:
+    """Returns (rows, columns) booleans, True in the cells of the picture that have a ray; None if all have one."""
+    width, height = calibration.size
+    scale = min(1.0, _MAX_MASK_SIDE / max(width, height))
+    columns, rows = max(1, round(width * scale)), max(1, round(height * scale))
+    x, y = (np.arange(columns) + 0.5) * width / columns, (np.arange(rows) + 0.5) * height / rows
+    _, status = calibration.ray(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
+    defined = (status == PointStatus.OK).reshape(rows, columns)
+    return None if defined.all() else defined
+
+
+def _positions(calibration: Calibration, max_angle: float) -> Array:
+    """Returns the picture coordinates of directions, see CalibratedGeometry; beyond its margin those of its border."""
+    x, y = np.meshgrid(*2 * [np.linspace(-1, 1, _INVERSE_SIDE)])
+    radius = np.hypot(x, y)
+    angle = np.minimum(radius * max_angle, np.pi)
+    across = np.sin(angle) / np.where(radius > 0, radius, 1)
+    # Computer vision's axes have y down and z forward.
+    pixels, _ = calibration.project(np.stack([x * across, -y * across, np.cos(angle)], axis=-1).reshape(-1, 3))
+    positions: Array = (pixels / calibration.size).reshape(_INVERSE_SIDE, _INVERSE_SIDE, 2)
+    unknown = ~np.isfinite(positions).all(axis=-1)
+    if unknown.any():
+        nearest = distance_transform_edt(unknown, return_distances=False, return_indices=True)
+        positions = positions[tuple(nearest)]
+    return np.clip(positions, -MARGIN, 1 + MARGIN)

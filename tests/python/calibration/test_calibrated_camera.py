@@ -1,0 +1,188 @@
+"""Cameras with the geometry of a calibration: against the calibration itself, and the light against the lens's."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+import realcam as rc
+from realcam.calibration.models import opencv_models
+
+from .. import scenes
+
+LENS = rc.Lens.load("double-gauss-50mm").focused(2.0)
+SIZE = (192, 128)
+
+
+def calibration(focal: float = 270.0, skewed: float = 1.0) -> rc.Calibration:
+    """A camera with barrel distortion whose axis is not in the middle and whose pixels are not square."""
+    K = [[focal, 0, 93.0], [0, focal * (1 + 0.01 * skewed), 66.0], [0, 0, 1]]
+    return rc.Calibration.opencv(K, [-0.15, 0.04, 0.0005, -0.0003, 0], SIZE)
+
+
+def fisheye(angle_deg: float = 95.0) -> rc.Calibration:
+    """An equidistant fisheye (Kannala and Brandt) whose image circle lies in the picture, as Kalibr writes them."""
+    focal = 62.0 / np.radians(angle_deg)
+    model = opencv_models.fisheye_model(
+        np.array([[focal, 0, 96.0], [0, focal, 64.0], [0, 0, 1]]),
+        [0.02, -0.004, 0.001, 0.0],
+        np.radians(angle_deg),
+    )
+    return rc.Calibration(model, SIZE, "kb4")
+
+
+@pytest.mark.parametrize("model", ["full", "thick", "mapped", "thin", "pinhole"])
+def test_chief_rays_have_the_directions_of_the_calibration(model: str) -> None:
+    made_from = calibration()
+    camera = made_from.camera(LENS, model=model)
+    error = made_from.geometry_error(camera)
+    # The aims for all kinds; the table is refined until measured errors are below 0.004.
+    assert error.middle_px < 0.01
+    assert error.everywhere_px < 0.05
+    assert error.rotation_deg < 3
+    np.testing.assert_allclose(camera.camera_matrix, made_from.camera_matrix, rtol=1e-9)
+
+
+def test_a_fisheye_of_190_degrees() -> None:
+    made_from = fisheye()
+    camera = made_from.camera("fisheye-6mm-220deg", film_width_mm=16.0)
+    error = made_from.geometry_error(camera)
+    assert error.middle_px < 0.01
+    assert error.everywhere_px < 0.05
+    assert camera.field_of_view_deg.vertical > 180
+    picture = rc.render(scenes.sky(), camera, effects=(), spp=4, device="cpu").pixels
+    _, status = made_from.ray([[96.0, 64.0], [2.0, 2.0]])
+    assert (status == [rc.PointStatus.OK, rc.PointStatus.NO_PROJECTION]).all()
+    assert picture[64, 96].min() > 0
+    assert (picture[2, 2] == 0).all()  # beyond the model's largest angle
+
+
+def test_a_lens_without_rotational_symmetry() -> None:
+    made_from = calibration(skewed=0)
+    camera = made_from.camera(LENS.tilted(3, 2))
+    assert made_from.geometry_error(camera).everywhere_px < 0.05
+
+
+@pytest.mark.parametrize("distance_m", [0.6, 5.0])
+def test_pixels_see_the_points_that_the_calibration_projects_there(distance_m: float, device: str) -> None:
+    """What the layers say that pixels see, and Camera.project and Camera.ray."""
+    made_from = calibration()
+    camera = made_from.camera(LENS.stopped_down(16), position=(0.2, 0.1, 0.5), look_at=(0.3, 0.1, -5))
+    rotation, translation = camera.world_to_camera
+    wall = scenes.scene_of(scenes.quad((0, 0, 0.5 - distance_m), 50, diffuse=0.5)).with_environment(1.0)
+    seen = rc.render(wall, camera, effects=(), spp=1, layers=("position_middle",), device=device)
+    points = seen.layers["position_middle"].reshape(-1, 3).astype(float)
+    pixels, status = made_from.project(points @ rotation.T + translation)
+    assert (status == rc.PointStatus.OK).all()
+    columns, rows = np.meshgrid(np.arange(SIZE[0]) + 0.5, np.arange(SIZE[1]) + 0.5)
+    middles = np.column_stack([columns.ravel(), rows.ravel()])
+    # The ray through the middle of the pupil's bounds is not quite the chief ray: by less than a tenth of the pupil of
+    # 3 mm, which out of focus, 0.6 m away, is 6 um on the film. Pixels have 186 um.
+    assert np.abs(pixels - middles).max() < 0.03
+    inside = rc.Calibration.ray(made_from, middles[::97])[0] @ rotation  # to the scene's axes
+    origins, directions = camera.ray(middles[::97], through="chief")
+    np.testing.assert_allclose(directions, inside, atol=2e-6)
+    again = camera.project(origins + 3.0 * directions, through="chief")
+    np.testing.assert_allclose(again, middles[::97], atol=2e-3)
+
+
+def test_blur_is_that_of_the_lens() -> None:
+    """Samples of one pixel come from the whole pupil, and meet where the lens is focused."""
+    camera = calibration().camera(LENS, exposure_time_s=1)
+    rays = camera.generate_rays(spp=256)
+    passed = (rays.weights > 0) & (rays.pixels == 64 * SIZE[0] + 93)
+    own = rc.Camera(LENS, film=camera.film, exposure_time_s=1).generate_rays(spp=256)
+    own_passed = (own.weights > 0) & (own.pixels == 64 * SIZE[0] + 93)
+    spread, own_spread = rays.origins_m[passed].std(axis=0), own.origins_m[own_passed].std(axis=0)
+    np.testing.assert_allclose(spread[:2], own_spread[:2], rtol=0.01)
+    np.testing.assert_allclose(rays.weights[passed].mean(), own.weights[own_passed].mean(), rtol=1e-4)
+
+
+@pytest.mark.parametrize("focal", [270.0, 240.0])
+@pytest.mark.parametrize("effects", [(), ("dispersion",)])
+def test_lamps_have_the_same_image_by_light_tracing(focal: float, effects: tuple[str, ...], device: str) -> None:
+    """A small lamp out of focus, off the axis: samples that start at it find the disc that samples of pixels find."""
+    camera = calibration(focal).camera(LENS, film_width_mm=36.0, exposure_time_s=1, iso=1)
+    lamp = scenes.scene_of(scenes.quad((0.14, 0.09, -0.8), 0.004, emission=1000.0), scenes.quad((0, 0, 9), 1))
+    common = {"effects": effects, "spp": 256, "max_bounces": 0, "device": device}
+    off, alone = (
+        rc.render(lamp, camera, light_tracing=how, **common).pixels.astype(float).sum(axis=2)  # type: ignore[arg-type]
+        for how in ("off", "alone")
+    )
+    columns, rows = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
+
+    def moments(picture: np.ndarray) -> np.ndarray:
+        mean = [(picture * at).sum() / picture.sum() for at in (columns, rows)]
+        width = [np.sqrt((picture * (at - m) ** 2).sum() / picture.sum()) for at, m in zip((columns, rows), mean)]
+        return np.array([*mean, *width])
+
+    # The disc has some 100 pixels, each with 256 samples of which one in twenty hits the lamp: 3% of noise each, 0.3%
+    # of the sum. The displacement within the disc is linear; the quadratic part is below a tenth of a pixel.
+    np.testing.assert_allclose(alone.sum(), off.sum(), rtol=0.02)
+    np.testing.assert_allclose(moments(alone), moments(off), atol=0.1)
+
+
+def test_measured_vignetting_replaces_that_of_the_lens() -> None:
+    made_from = calibration()
+
+    def cosine(pixels: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+        return 1 / (1 + ((pixels - (93.5, 66.5)) ** 2).sum(axis=-1) / 200.0**2)
+
+    lens = LENS.stopped_down(5.6)
+    measured = rc.Vignetting(cosine, f_number=5.6)
+    settings = {"effects": (), "spp": 64, "device": "cpu"}
+    taken, plain = (
+        rc.render(scenes.sky(), made_from.camera(lens, exposure_time_s=1, vignetting=v), **settings).pixels[..., 1]
+        for v in (measured, None)
+    )
+    columns, rows = np.meshgrid(np.arange(SIZE[0]) + 0.5, np.arange(SIZE[1]) + 0.5)
+    expected = cosine(np.stack([columns, rows], axis=-1), SIZE)
+    middle = np.s_[60:72, 88:100]
+    # Irradiance is constant over a pixel's samples but for those that rims stop: the noise of 64 samples, averaged over
+    # blocks of 8 x 8 pixels, is below 1% at the corners.
+    blocks = (taken / expected).reshape(16, 8, 24, 8).mean(axis=(1, 3))
+    np.testing.assert_allclose(blocks, blocks[8, 11], rtol=0.02)
+    np.testing.assert_allclose(taken[middle].mean(), plain[middle].mean(), rtol=0.005)
+    with pytest.raises(rc.InputError, match=r"times as bright as lens .* degrees from the axis"):
+        made_from.camera(lens, vignetting=rc.Vignetting(lambda pixels, size: 1 / cosine(pixels, size) ** 9))
+
+
+def test_a_lens_is_chosen_and_named() -> None:
+    camera = calibration(skewed=0).camera("auto", f_number=4, focus_m=3)
+    assert calibration(skewed=0).geometry_error(camera).rotation_deg < 10
+    assert camera.lens.f_number == pytest.approx(4, rel=1e-3)
+    with pytest.raises(rc.InputError, match=r"expected a lens of f = .* mm that sees .* opens to f/0.4; the nearest is"):
+        calibration(skewed=0).camera("auto", f_number=0.4)
+
+
+def test_the_pose_is_that_of_the_centre_of_projection() -> None:
+    pose = np.eye(4)
+    pose[:3, :3] = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
+    pose[:3, 3] = 1, 2, 3
+    camera = calibration().camera(LENS, scene_from_camera=pose)
+    np.testing.assert_allclose(camera.entrance_pupil_position_m, (1, 2, 3), atol=1e-9)
+    rotation, translation = camera.world_to_camera
+    np.testing.assert_allclose(rotation, pose[:3, :3].T, atol=1e-9)
+    with pytest.raises(rc.InputError, match="rotation"):
+        calibration().camera(LENS, scene_from_camera=2 * np.eye(4) - np.diag([0, 0, 0, 1]))
+
+
+def test_cameras_are_values() -> None:
+    camera = calibration().camera(LENS)
+    assert copy.deepcopy(camera) == camera
+    restored = pickle.loads(pickle.dumps(camera))
+    assert restored == camera
+    assert hash(restored) == hash(camera)
+    assert camera != rc.Camera(LENS, film=camera.film)
+    with pytest.raises(rc.InputError, match="another size or shift"):
+        camera.replace(film=rc.Film(36, 24))
+    # Another resolution sees the same.
+    half = camera.replace(film=camera.film.replace(resolution=(SIZE[0] // 2, SIZE[1] // 2)))
+    np.testing.assert_allclose(half.ray([[30.0, 20.0]])[1], camera.ray([[60.0, 40.0]])[1], atol=1e-12)
+
+
+def test_a_lens_that_does_not_see_the_picture_is_refused() -> None:
+    with pytest.raises(rc.InputError, match=r"pixel \(.*\) is more than 45 degrees from that of lens"):
+        fisheye().camera(LENS, film_width_mm=36)
