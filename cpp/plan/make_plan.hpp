@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "../camera/camera_setup.hpp"
-#include "../optics/pupil/pupil_grid.hpp"
+#include "../optics/pupil/film_symmetry.hpp"
 #include "plan.hpp"
 #include "plan_costs.hpp"
 #include "plan_shot.hpp"

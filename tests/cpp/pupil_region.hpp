@@ -47,11 +47,11 @@ public:
         const double position = pupil.rows * (1 - std::sqrt(inside));
         row_ = std::min(static_cast<int>(position), pupil.rows - 1);
         const double f = position - row_;
-        const PupilNode &a = pupil.nodes[row_], &b = pupil.nodes[row_ + 1];
+        const SymmetricPupilNode &a = pupil.nodes[row_], &b = pupil.nodes[row_ + 1];
         const auto between = [&](float x, float y) {
             return static_cast<double>(x) * (1 - f) + static_cast<double>(y) * f;
         };
-        centre = between(a.centre, b.centre);
+        centre = between(a.centre_l, b.centre_l);
         half_width = between(a.half_width, b.half_width);
         half_height = between(a.half_height, b.half_height);
     }

@@ -9,8 +9,8 @@
 
 #include "../../embree/lens_rays.hpp"
 #include "../../optics/prescription/known_wavelengths.hpp"
+#include "../../optics/pupil/film_symmetry.hpp"
 #include "../../optics/pupil/pupil.hpp"
-#include "../../optics/pupil/pupil_grid.hpp"
 #include "../../optics/trace/open_iris.hpp"
 #include "../bindings.hpp"
 #include "../values/arrays.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 /// Contents of a PupilView (see pupil_view.hpp) as flat arrays.
 struct PupilArrays {
-    std::vector<float> nodes;  ///< (rows + 1, 3): members of PupilNode
+    std::vector<float> nodes;  ///< (rows + 1, 3): members of SymmetricPupilNode
     std::vector<float> outline;  ///< (rows, sectors, 5): members of PupilSector
     py::ssize_t rows, sectors;
     double image_radius_mm;  ///< film radius beyond which no light arrives
@@ -36,8 +36,8 @@ PupilArrays pupil_arrays(const LensSystem& lens, double film_radius_mm, const st
     const PupilView view = pupil.view();
     PupilArrays arrays{{}, {}, view.rows, PupilView::kSectors, pupil.image_radius()};
     for (int i = 0; i <= view.rows; ++i) {
-        const PupilNode& node = view.nodes[i];
-        arrays.nodes.insert(arrays.nodes.end(), {node.centre, node.half_width, node.half_height});
+        const SymmetricPupilNode& node = view.nodes[i];
+        arrays.nodes.insert(arrays.nodes.end(), {node.centre_l, node.half_width, node.half_height});
     }
     for (int i = 0; i < view.rows * PupilView::kSectors; ++i) {
         const PupilSector& s = view.outline[i];

@@ -1,6 +1,6 @@
 #include "direct_lens_path.hpp"
 
-#include "../../optics/pupil/pupil_grid.hpp"
+#include "../../optics/pupil/film_symmetry.hpp"
 #include "../../optics/trace/film_frame.hpp"
 
 namespace realcam {

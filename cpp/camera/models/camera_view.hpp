@@ -4,7 +4,7 @@
 #include "../../math/key_interval.hpp"
 #include "../../math/lanes.hpp"
 #include "../../optics/pupil/film_surface.hpp"
-#include "../../optics/pupil/pupil_grid_view.hpp"
+#include "../../optics/pupil/pupil_view.hpp"
 #include "../../optics/trace/lens_polynomial_view.hpp"
 #include "../../optics/trace/lens_view.hpp"
 #include "../effects/effect_views.hpp"
@@ -184,12 +184,8 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     move(view.polynomial.coefficients, 2 * LensPolynomialView::kVectors * view.polynomial.terms);
     view.move_arrays(view.lens.count, move);
     view.traced_lights.move_arrays(move);
-    move(view.pupil.nodes, view.pupil.rows + 1);
-    move(view.pupil.outline, view.pupil.rows * PupilView::kSectors);
-    const PupilGridView& grid = view.pupil_grid;
-    move(view.pupil_grid.nodes, (grid.columns / kCellsPerPupilNode + 1) * (grid.rows / kCellsPerPupilNode + 1));
-    move(view.pupil_grid.cells, grid.columns * grid.rows);
-    move(view.pupil_grid.outline, grid.columns * grid.rows * 2 * PupilGridView::kSectors);
+    view.pupil.move_arrays(move);
+    view.pupil_grid.move_arrays(move);
     return view;
 }
 

@@ -20,11 +20,10 @@ REALCAM_INLINE Vec2f spiral_point(int index) {
     return {radius * azimuth.x, radius * azimuth.y};
 }
 
-/// Optical direction from a film point (mm) to a point in the box around its pupil. `pupil`: PupilView or
-/// PupilGridView.
-template <class View>
-REALCAM_INLINE Vec3f direction_to(const View& pupil, Vec2f film, Vec2f pupil_point) {
-    const auto at = pupil_lookup(pupil, film.x, film.y);
+/// Optical direction from a film point (mm) to a point in the box around its pupil.
+template <class Map>
+REALCAM_INLINE Vec3f direction_to(const PupilTableView<Map>& pupil, Vec2f film, Vec2f pupil_point) {
+    const PupilLookup at(pupil, film.x, film.y);
     const Vec2f d = at.from_box(pupil_point), cosines = at.to_film(d);
     return {cosines.x, cosines.y, -sqrt_or_zero(pupil.index_squared - d.x * d.x - d.y * d.y)};
 }
@@ -36,8 +35,8 @@ REALCAM_INLINE Vec3f direction_to(const CameraView& camera, Vec2f film, Vec2f pu
 
 /// False if no light can reach a film point.
 REALCAM_INLINE bool may_be_lit(const CameraView& camera, Vec2f film) {
-    if (camera.pupil_grid.nodes) return may_be_lit(camera.pupil_grid, pupil_lookup(camera.pupil_grid, film.x, film.y));
-    return may_be_lit(camera.pupil, pupil_lookup(camera.pupil, film.x, film.y));
+    if (camera.pupil_grid.nodes) return PupilLookup(camera.pupil_grid, film.x, film.y).may_be_lit();
+    return PupilLookup(camera.pupil, film.x, film.y).may_be_lit();
 }
 
 /// Index of the next point, from `first` on, that lies in the tabulated pupil; kPupilTrials if there is none.

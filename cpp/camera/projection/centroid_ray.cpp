@@ -32,17 +32,17 @@ CentroidRays::CentroidRays(const LensSystem& lens, double focus)
       focus_(focus) {}
 
 FilmBundle CentroidRays::bundle(const PupilView& pupil, double film_radius) const {
-    const PupilRowPosition row = pupil_lookup(pupil, static_cast<float>(film_radius), 0);
-    const EntryRectangle in = {{0, static_cast<double>(row.centre)},
-                               {static_cast<double>(row.half_height), static_cast<double>(row.half_width)}};
+    const PupilLookup row(pupil, static_cast<float>(film_radius), 0);
+    const EntryRectangle in = {{0, static_cast<double>(row.box.centre_l)},
+                               {static_cast<double>(row.box.half_height), static_cast<double>(row.box.half_width)}};
     return FilmBundle(to_scene_, film_, {0, film_radius}, in, true);
 }
 
 FilmBundle CentroidRays::bundle(const PupilGridView& pupil, Vec2<double> film) const {
-    const PupilGridLookup at = pupil_lookup(pupil, static_cast<float>(film.x), static_cast<float>(film.y));
-    const EntryRectangle in = {
-        {static_cast<double>(at.sign_l * at.box.centre_l), static_cast<double>(at.sign_m * at.box.centre_m)},
-        {static_cast<double>(at.box.half_width), static_cast<double>(at.box.half_height)}};
+    const PupilLookup at(pupil, static_cast<float>(film.x), static_cast<float>(film.y));
+    const Vec2f middle = at.to_film({at.box.centre_l, at.box.centre_m});
+    const EntryRectangle in = {{static_cast<double>(middle.x), static_cast<double>(middle.y)},
+                               {static_cast<double>(at.box.half_width), static_cast<double>(at.box.half_height)}};
     return FilmBundle(to_scene_, film_, film, in);
 }
 

@@ -4,7 +4,7 @@
 
 #include "../../optics/analysis/film_bundle.hpp"
 #include "../../optics/analysis/scene_bundle.hpp"
-#include "../../optics/pupil/pupil_grid_view.hpp"
+#include "../../optics/pupil/pupil_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -218,8 +218,8 @@ void RadialProjection::trace_chief_rays(const LensSystem& lens, const PupilView&
     for (int k = 0; k <= kSteps; ++k) {
         // First guess: extrapolated from the last two rays. Second guess, for the axis and after a gap: the centre of
         // the pupil.
-        const PupilRowPosition row = pupil_lookup(pupil, static_cast<float>(radius_of(k)), 0);
-        const double guesses[2] = {cosine + change, static_cast<double>(row.centre)};
+        const PupilLookup row(pupil, static_cast<float>(radius_of(k)), 0);
+        const double guesses[2] = {cosine + change, static_cast<double>(row.box.centre_l)};
         const double light = rays_[static_cast<std::size_t>(k)].light;
         set_ray(k, std::nullopt, light);
         for (const double guess : guesses) {

@@ -50,13 +50,14 @@ struct DirectionBox {
                (m_min > searched.m_min || searched.m_min <= widest.m_min) &&
                (m_max < searched.m_max || searched.m_max >= widest.m_max);
     }
-    /// Extrapolates linearly: moves each side on by `steps` times its change from the previous box to this one.
-    DirectionBox extrapolated_from(const DirectionBox& previous, double steps) const {
-        const auto extrapolate = [steps](double current, double earlier) {
+    /// Box in which to expect the next region of a succession in which this one follows `previous`: this box and its
+    /// linear extrapolation, by `steps` times its change from `previous`.
+    DirectionBox expected_after(const DirectionBox& previous, double steps) const {
+        const auto extrapolated = [steps](double current, double earlier) {
             return current + steps * (current - earlier);
         };
-        return {extrapolate(l_min, previous.l_min), extrapolate(l_max, previous.l_max),
-                extrapolate(m_min, previous.m_min), extrapolate(m_max, previous.m_max)};
+        return joined_with({extrapolated(l_min, previous.l_min), extrapolated(l_max, previous.l_max),
+                            extrapolated(m_min, previous.m_min), extrapolated(m_max, previous.m_max)});
     }
 };
 

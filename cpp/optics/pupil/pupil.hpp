@@ -1,30 +1,25 @@
 #pragma once
-#include <functional>
-#include <map>
 #include <memory>
 #include <vector>
 
-#include "pupil_outline_search.hpp"
 #include "pupil_row_search.hpp"
-#include "pupil_view.hpp"
-#include "stray_search.hpp"
+#include "pupil_table.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-/// Pupil of a rotationally symmetric lens: for every film radius, the region of directions in which rays pass the lens,
-/// found by tracing real rays. Owns the memory of its PupilView, from which rays are sampled.
-class Pupil {
+/// Pupil of a rotationally symmetric lens, found by tracing real rays.
+class Pupil : public PupilTable<RadialFilmPoints> {
 public:
-    static constexpr int kRows = PupilRowSearch::kRows;  ///< rows of the table; there are kRows + 1 nodes
-    static constexpr int kSectors = PupilRow::kSectors;  ///< sectors of a row, for m >= 0
+    static constexpr int kRows = RadialFilmPoints::columns;  ///< rows of the table; there are kRows + 1 nodes
+    static constexpr int kSectors = kPupilSectors;  ///< sectors of a row, for m >= 0
     /// Upper bound of the number of ray blocks that the search takes for any lens: 270 searches for boxes (every eighth
     /// row, the rows around and beyond a dark one, the edge of the image, all rows, and half-way between them),
-    /// outlines at both ends of each row and at seven positions in between, found in five steps, and 256 rounds of
-    /// StraySearch per row. Lenses that can be made take a hundredth of it.
+    /// outlines at both ends of each row and at seven positions in between, found in five steps, and the rounds of
+    /// StraySearch of each row. Lenses that can be made take a hundredth of it.
     static constexpr int kMaxBlocks = 270 * PupilSearch::kMaxBlocks + OutlineSearch::max_blocks(kRows / 2 + 1) +
                                       OutlineSearch::max_blocks(kRows / 2) + OutlineSearch::max_blocks(kRows) +
                                       OutlineSearch::max_blocks(2 * kRows) + OutlineSearch::max_blocks(4 * kRows) +
-                                      256 * kRows;
+                                      RadialFilmPoints::kStrayRounds * kRows;
 
     /// `film_radius`: distance of the farthest film point from the axis, mm. `wavelengths_nm`: the pupil contains the
     /// directions that pass at any of these wavelengths; if empty, at the design wavelength. `similar`: pupil of the
@@ -34,10 +29,8 @@ public:
     Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer = {},
           const std::vector<double>& wavelengths_nm = {}, const Pupil* similar = nullptr);
 
-    /// View for sampling, valid as long as this object.
-    PupilView view() const;
     /// Radius of the image circle, at most `film_radius`, mm; 0 if no light reaches the film.
-    double image_radius() const { return image_radius_; }
+    double image_radius() const { return points_.image_radius; }
     /// True if interpolation between the rows of the table describes the pupil. It does not for a stop of a few
     /// micrometres, whose pupil moves by more than its own size from row to row.
     bool is_continuous() const { return is_continuous_; }
@@ -49,6 +42,8 @@ private:
     static constexpr float kSmallHalfWidth = 1e-3f;
     /// Number of outermost rows (0.4% of the image's area) whose outline is the whole box.
     static constexpr int kEdgeRows = 2;
+    /// Number of positions in a row at which outlines may be searched.
+    static constexpr int kPositionsPerRow = 8;
 
     /// Finds the pupil without a similar one.
     void find_from_scratch();
@@ -66,63 +61,37 @@ private:
     /// one.
     void set_image_edge(PupilRowSearch::RadiusSearch& search);
 
-    /// Converts a box to the type of nodes.
-    static PupilNode node_of(const DirectionBox& box);
-
     /// Sets a minimum width for the boxes of the last nodes, because the search grid misses the thin ends of the
     /// crescent at the edge of the image.
     void widen_last_nodes();
 
     /// Search over the rows of the table.
-    PupilRowSearch rows() const { return {search_, image_radius_}; }
-    /// Film radius at a position in rows, mm.
-    double radius_at(double position) const { return rows().radius_at(position); }
+    PupilRowSearch rows() const { return {search_, points_}; }
 
     /// True if the boxes half-way between rows are where their neighbours predict them, or if the pupil is not small.
     /// Skips slivers at the edge of the image, which are small even if the stop is not.
     bool nodes_are_continuous() const;
-
-    /// Interpolates the nodes; `position` in rows.
-    PupilNode node_at(double position) const;
-
-    /// Outlines by their position in the table, in eighths of a row.
-    using OutlinesByEighth = std::map<int, PupilOutline>;
-
-    /// Returns requests for the outlines at these positions, in the boxes of the interpolated nodes.
-    std::vector<OutlineRequest> requests_at(const std::vector<int>& eighths) const;
-
-    /// Finds outlines midway between known ones, which lie `step` eighths before and behind, in the first `rows` rows
-    /// for which `is_selected` returns true, and adds them to `outlines`.
-    void find_midway(int step, int rows, const std::function<bool(int row)>& is_selected,
-                     OutlinesByEighth& outlines) const;
 
     /// Number of rows with an outline of their own.
     int outlined_rows() const { return ends_inside_film_ ? kRows - kEdgeRows : kRows; }
 
     /// Finds the outlines at both ends of each row, at its midpoint, and more densely in rows over which the outline
     /// changes much, such as near the edge of the image.
-    OutlinesByEighth find_outlines() const;
+    OutlineLattice find_outlines() const;
 
     /// Sets the sectors of all rows. They contain the outlines from one end of the row to the other, with a margin
     /// (enclosing_outline).
-    void add_rows(const OutlinesByEighth& outlines);
+    void add_rows(const OutlineLattice& outlines);
 
-    /// Returns the outlines from the beginning of a row to its end.
-    static std::vector<PupilOutline> outlines_of(int row, const OutlinesByEighth& all);
+    /// Sets the sectors of a row, after StraySearch has enlarged them. If few rays pass inside the sectors, they do not
+    /// describe the light, which may form several rings; the whole box then replaces them.
+    void add_row(int row, const PupilOutline& outline, StrayExtent extent);
 
-    /// Sets the sectors of a row, after StraySearch has enlarged them; `half_size` and `clean_rounds` are its
-    /// parameters. If few rays pass inside the sectors, they do not describe the light, which may form several rings;
-    /// the whole box then replaces them.
-    void add_row(int row, PupilRow sectors, double half_size, int clean_rounds);
-
-    PupilSearch search_;
-    double film_radius_, image_radius_;  ///< mm
+    double film_radius_;  ///< mm
     bool ends_inside_film_ = false, is_continuous_ = false, was_found_near_similar_ = false;
-    std::vector<PupilNode> nodes_;
     DirectionBox last_box_{};  ///< box of the outermost lit radius
     /// Outlines in the boxes of the nodes: this pupil's own, or those of the similar one from which it was found.
-    std::shared_ptr<const OutlinesByEighth> outlines_;
-    std::vector<PupilSector> outline_;  ///< kSectors sectors of each row
+    std::shared_ptr<const OutlineLattice> outlines_;
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -52,7 +52,7 @@ PupilOutline enclosing_outline(const std::vector<PupilOutline>& outlines);
 /// units of the half-widths of the box, relative to its centre.
 class PupilRow {
 public:
-    static constexpr int kSectors = PupilView::kSectors;  ///< sectors for m >= 0
+    static constexpr int kSectors = kPupilSectors;  ///< sectors for m >= 0
 
     /// Divides the outline into sectors of nearly equal area.
     explicit PupilRow(const PupilOutline& outline);

@@ -5,17 +5,12 @@
 
 namespace realcam {
 
-double PupilRowSearch::radius_at(double position) const {
-    const double inward = 1 - position / kRows;
-    return image_radius_ * (1 - inward * inward);
-}
-
 PupilRowSearch::RadiusSearch PupilRowSearch::search_from_axis() const {
     static_assert(kRows % kStride == 0);
     RadiusSearch search;
     PupilTrack track;
     const auto is_lit = [&](int row) {
-        if (!track.find(search_, radius_at(row))) return false;
+        if (!track.find(search_, points_.radius_at(row))) return false;
         search.lit.push_back(*track.last);
         return true;
     };
@@ -30,13 +25,14 @@ PupilRowSearch::RadiusSearch PupilRowSearch::search_from_axis() const {
     search_.lens().for_each(kRows - dark, [&](int i) {
         PupilTrack local_track = track;
         const int row = dark + 1 + i;
-        boxes_beyond[static_cast<std::size_t>(row)] = local_track.find(search_, radius_at(row));
+        boxes_beyond[static_cast<std::size_t>(row)] = local_track.find(search_, points_.radius_at(row));
     });
     int last = kRows;
     while (last >= dark && !boxes_beyond[static_cast<std::size_t>(last)]) --last;
     for (int row = dark + 1; row <= last; ++row)
-        if (const auto& box = boxes_beyond[static_cast<std::size_t>(row)]) search.lit.push_back({radius_at(row), *box});
-    for (int row = kRows; row > last; --row) search.dark.push_back(radius_at(row));
+        if (const auto& box = boxes_beyond[static_cast<std::size_t>(row)])
+            search.lit.push_back({points_.radius_at(row), *box});
+    for (int row = kRows; row > last; --row) search.dark.push_back(points_.radius_at(row));
     return search;
 }
 
@@ -106,7 +102,7 @@ PupilRowBoxes PupilRowSearch::boxes_of_rows(const std::vector<PupilTrack::LitRad
     PupilRowBoxes boxes(kRows + 1);
     search_.lens().for_each(kRows + 1 - first_row, [&](int i) {
         const int row = first_row + i;
-        const double radius = radius_at(row);
+        const double radius = points_.radius_at(row);
         PupilTrack track = track_between(lit, radius);
         const bool is_known = track.last->radius == radius;
         boxes[static_cast<std::size_t>(row)] = is_known ? track.last->box : track.find(search_, radius);

@@ -2,6 +2,7 @@
 #include <optional>
 #include <vector>
 
+#include "film_points.hpp"
 #include "pupil_track.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -14,13 +15,10 @@ using PupilRowBoxes = std::vector<std::optional<DirectionBox>>;
 /// film radius; the spacing of rows decreases towards the edge of the image.
 class PupilRowSearch {
 public:
-    static constexpr int kRows = 48;  ///< index of the last row; row 0 is the axis
+    static constexpr int kRows = RadialFilmPoints::columns;  ///< index of the last row; row 0 is the axis
 
-    /// `image_radius`: film radius of the last row, mm. The object keeps a reference to `search`.
-    PupilRowSearch(const PupilSearch& search, double image_radius) : search_(search), image_radius_(image_radius) {}
-
-    /// Returns the film radius of a row, mm; `position` may lie between two rows.
-    double radius_at(double position) const;
+    /// The object keeps a reference to `search`.
+    PupilRowSearch(const PupilSearch& search, RadialFilmPoints points) : search_(search), points_(points) {}
 
     /// Film radii that have been searched.
     struct RadiusSearch {
@@ -59,7 +57,7 @@ private:
     static PupilTrack track_between(const std::vector<PupilTrack::LitRadius>& lit, double radius);
 
     const PupilSearch& search_;
-    double image_radius_;
+    RadialFilmPoints points_;
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -42,7 +42,7 @@ private:
     std::optional<DirectionBox> expected_at(double radius) const {
         if (!previous) return last ? std::optional(last->box) : std::nullopt;
         const double steps = (radius - last->radius) / (last->radius - previous->radius);
-        return last->box.joined_with(last->box.extrapolated_from(previous->box, steps));
+        return last->box.expected_after(previous->box, steps);
     }
 };
 

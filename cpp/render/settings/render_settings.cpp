@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "../../camera/effects/effect_tables.hpp"
-#include "../../optics/pupil/pupil_grid.hpp"
+#include "../../optics/pupil/film_symmetry.hpp"
 #include "effect_names.hpp"
 
 namespace realcam {

@@ -106,9 +106,9 @@ TEST_CASE("no ray that passes lies outside the pupil over the film") {
         int strays = 0;
         // All over 1.6 boxes around the region.
         const Traced all = trace_samples(lens, [&](float x, float y, float u, float v) -> PupilSample {
-            const PupilGridLookup place = pupil_lookup(view, x, y);
-            const float l = place.sign_l * (place.box.centre_l + 1.6f * (2 * u - 1) * place.box.half_width);
-            const float m = place.sign_m * (place.box.centre_m + 1.6f * (2 * v - 1) * place.box.half_height);
+            const PupilLookup place(view, x, y);
+            const float l = place.at.frame.sign_l * (place.box.centre_l + 1.6f * (2 * u - 1) * place.box.half_width);
+            const float m = place.at.frame.sign_m * (place.box.centre_m + 1.6f * (2 * v - 1) * place.box.half_height);
             const float rest = view.index_squared - l * l - m * m;
             // Those that the table holds are of no interest: left out here, the others alone are traced.
             if (rest <= 0 || pupil_pdf(view, x, y, l, m) > 0) return {{l, m, 0}, 0};

@@ -35,10 +35,11 @@ LensSystem lens_at(const FilmPoint& point) {
 // Square bins in optical direction cosines around the region's box, the film point at 0.7 radians.
 template <class Sampler>
 Bins in_direction_cosines(const PupilView& pupil, float x, float y, Sampler&& sampler, unsigned seed) {
-    const PupilRowPosition place = pupil_lookup(pupil, x, y);
+    const PupilLookup place(pupil, x, y);
     // Rows reach past the box where their ends differ or stray rays have widened them.
-    const double half = 2.2 * static_cast<double>(std::max(place.half_width, place.half_height));
-    const double l = static_cast<double>(place.centre * place.cos), m = static_cast<double>(place.centre * place.sin);
+    const double half = 2.2 * static_cast<double>(std::max(place.box.half_width, place.box.half_height));
+    const double l = static_cast<double>(place.box.centre_l * place.at.frame.cos),
+                 m = static_cast<double>(place.box.centre_l * place.at.frame.sin);
     Bins bins(Bins::even(l - half, l + half, kSide), Bins::even(m - half, m + half, kSide));
     // The density jumps at the sectors' edges: the rule's error in a bin that an edge cuts is 1e-3.
     bins.expect(

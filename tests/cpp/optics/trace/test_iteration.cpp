@@ -260,7 +260,7 @@ TEST_CASE("the pupil search ends within its bound, whatever passes") {
         worst = std::max(worst, blocks);
         ++count;
         const PupilView view = pupil.view();
-        for (int i = 0; i <= view.rows; ++i) CHECK(std::isfinite(view.nodes[i].centre + view.nodes[i].half_width));
+        for (int i = 0; i <= view.rows; ++i) CHECK(std::isfinite(view.nodes[i].centre_l + view.nodes[i].half_width));
         for (int i = 0; i < view.rows * PupilView::kSectors; ++i)
             CHECK(std::isfinite(view.outline[i].x + view.outline[i].dx));
     };
