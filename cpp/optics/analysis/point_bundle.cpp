@@ -94,11 +94,11 @@ void PointBundle::measure(const FieldRays& rays, int probe_rays) {
     centroid = {centroid.x / weight, centroid.y / weight};
     middle = {0.5 * (low.x + high.x), 0.5 * (low.y + high.y)};
     // Margin beyond the outermost rays, and a small one in case all rays lie on one line. The light may continue by
-    // half a cell of the probe on either side.
+    // almost a cell of the probe on either side.
     const double min_margin = 1e-3 * hypotenuse(high.x - low.x, high.y - low.y);
     const auto half_side = [&](double extent, double extent_on_stop) {
         const double cells = 0.5 * probe_rays * extent_on_stop;  // between the outermost rays
-        const double margin = std::max(2.0 / probe_rays, cells > 0.5 ? 1 / cells : 0.0);
+        const double margin = std::max(2.0 / probe_rays, cells > 0.5 ? 2 / cells : 0.0);
         return (1 + margin) * 0.5 * extent + min_margin;
     };
     if (mirrored) middle.x = centroid.x = 0;

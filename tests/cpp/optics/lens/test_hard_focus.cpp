@@ -186,8 +186,8 @@ TEST_CASE("errors tell two distances apart that are nearly equal") {
 
 TEST_CASE("light with more than eight edges is focused as a whole") {
     // A plate whose back has the sag a T9(2 u^2 - 1), u = r / R, bends the light alternately outwards and inwards, and
-    // a rim passes some zones: cos(9 t) with u^2 = (1 + cos t) / 2. The light is a dozen zones.
-    constexpr double kIndex = 1.5, kUnit = 10, kAmplitude = 0.1667, kRim = 10, kAway = 100, kStop = 9.5;
+    // a rim passes some zones: cos(9 t) with u^2 = (1 + cos t) / 2. The light is five zones, with nine edges.
+    constexpr double kIndex = 1.5, kUnit = 10, kAmplitude = -0.1, kRim = 10, kAway = 100, kStop = 9.5;
     constexpr double kT9[] = {0, 9, 0, -120, 0, 432, 0, -576, 0, 256};  // by powers of x
     std::vector<double> powers(10, 0.0);  // of u^2
     for (int n = 0; n < 10; ++n)
@@ -217,7 +217,7 @@ TEST_CASE("light with more than eight edges is focused as a whole") {
         for (int n = 9; n >= 0; --n) slope = slope * x + value, value = value * x + kT9[n];
         const double incline = std::atan(kAmplitude * slope * 4 * r / (kUnit * kUnit));
         const double refracted = std::asin(kIndex * std::sin(incline));  // NaN: total reflection
-        const double m = -std::tan(refracted - incline);
+        const double m = std::tan(refracted - incline);
         // The vertex of the sag is the point of the axis, where T9(-1) = -1.
         const double height = r + m * (kAway - kAmplitude * (value + 1));
         const bool passes = std::fabs(height) <= kRim;
