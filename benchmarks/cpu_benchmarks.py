@@ -28,11 +28,10 @@ def lens_setup(threads: int) -> Result:
     times = {}
     for name in lens_names():
         lens = Lens.load(name)
-        radius = 0.5 * math.hypot(*lens.film_mm)
         f_number = lens.first_order().f_number
         stopped = lens.stopped_down(max(11.0, f_number))
         times[name] = {
-            state + where: round(1e3 * _best(partial(_core.pupil_setup, changed, radius, on_one_core=not where)), 1)
+            state + where: round(1e3 * _best(partial(_core.pupil_setup, changed, on_one_core=not where)), 1)
             for where in ("", ", all cores")
             for state, changed in (("wide_open", lens), ("f/11", stopped))
         }

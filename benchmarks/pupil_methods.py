@@ -40,11 +40,11 @@ def main() -> None:
             levels=False,
         )
         if number == 0:
-            heads = [f"{rung.name} ({rung.samples_per_second / 1e6:.2g} M/s)" for rung in cost.samplings[:-1]]
+            heads = [f"{level.name} ({level.samples_per_second / 1e6:.2g} M/s)" for level in cost.samplings[:-1]]
             print("| lens | " + " | ".join(heads) + " |\n|---" + "|---" * len(heads) + "|")
         ours = cost.samplings[-1]
         goal = ours.pictures[-1].rmse
-        ratios = {rung.name: rung.seconds_to(goal) / ours.seconds_to(goal) for rung in cost.samplings[:-1]}
+        ratios = {level.name: level.seconds_to(goal) / ours.seconds_to(goal) for level in cost.samplings[:-1]}
         cells = ["never" if math.isinf(ratio) else f"{ratio:.2f}" for ratio in ratios.values()]
         impossible = f" (not {', '.join(cost.impossible)})" if cost.impossible else ""
         print(f"| {name}{impossible} | " + " | ".join(cells) + " |", flush=True)

@@ -1,6 +1,7 @@
 #include "number_text.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -50,6 +51,20 @@ double rounded(double value, int digits) {
 
 std::string counted(double count, const std::string& noun, int digits) {
     return number_text(count, digits) + ' ' + noun + (count == 1 ? "" : "s");
+}
+
+double number_in(std::string_view text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size() && !text.empty() && std::isfinite(value)
+               ? value
+               : std::nan("");
+}
+
+std::string shortest_text(double value) {
+    char text[32];
+    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+    return error == std::errc() ? std::string(text, end) : std::string();
 }
 
 }  // namespace realcam

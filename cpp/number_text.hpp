@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <string_view>
 
 #include "platform.hpp"
 
@@ -16,5 +17,11 @@ double rounded(double value, int digits);
 /// Formats a count with its noun in the singular or plural, which ends in s: "1 sample", "10 000 samples". `digits`:
 /// see number_text.
 std::string counted(double count, const std::string& noun, int digits = 4);
+
+/// Parses a finite number; NaN if the text is not one.
+double number_in(std::string_view text);
+
+/// Returns the shortest decimal text that parses to the same number.
+std::string shortest_text(double value);
 
 }  // namespace REALCAM_NAMESPACE

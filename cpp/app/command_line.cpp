@@ -5,9 +5,11 @@
 #include <memory>
 #include <new>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "../cuda/device/cuda_devices.hpp"
 #include "../devices/devices.hpp"
@@ -150,6 +152,23 @@ void collect_commands(const CLI::App& command, std::vector<std::string> words, s
             entry.options.push_back({names_of(*option), type_of(*option), option->get_description()});
 }
 
+/// Returns the arguments in reverse order, as CLI11 expects them. An option with an empty value, such as "--frames=",
+/// becomes two words, because CLI11 would take the next word as its value.
+std::vector<std::string> reversed_words(int argc, char** argv) {
+    std::vector<std::string> words;
+    bool has_options = true;  // up to "--"
+    for (int i = 1; i < argc; ++i) {
+        std::string word = argv[i];
+        has_options = has_options && word != "--";
+        const bool is_empty_option = has_options && word.starts_with("--") && word.find('=') == word.size() - 1;
+        if (is_empty_option) word.pop_back();
+        words.push_back(std::move(word));
+        if (is_empty_option) words.emplace_back();
+    }
+    std::reverse(words.begin(), words.end());
+    return words;
+}
+
 /// Parses the arguments and runs the command. Returns the exit code; errors of the command are thrown.
 int run(int argc, char** argv, const VideoWriter* video_writer) {
     CLI::App app;
@@ -159,7 +178,7 @@ int run(int argc, char** argv, const VideoWriter* video_writer) {
         return 0;
     }
     try {
-        app.parse(argc, argv);
+        app.parse(reversed_words(argc, argv));
         return std::fflush(stdout) == 0 ? 0 : fail("the standard output cannot be written to");
     } catch (const CLI::Success& success) {  // --help and --version
         return app.exit(success);

@@ -36,6 +36,10 @@ using WarnOf = std::function<void(const std::string& message)>;
 Environment read_environment(const std::string& path, const std::string& layer = {}, const WarnOf& warn = {},
                              const KeepGoing& keep_going = {});
 
+/// Reads a picture of any projection, with the values that read_environment gives it. Throws the errors of
+/// read_environment.
+Environment read_picture(const std::string& path, const WarnOf& warn = {}, const KeepGoing& keep_going = {});
+
 /// Non-owning view of a rendered picture, with its layers.
 struct PictureView {
     int width = 0, height = 0;

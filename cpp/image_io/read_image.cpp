@@ -176,18 +176,32 @@ io::DecodedImage read_image(const std::string& path, std::span<const std::uint8_
     return decode(*open_picture(path, encoded_bytes), keep_going);
 }
 
-Environment read_environment(const std::string& path, const std::string& layer, const WarnOf& warn,
-                             const KeepGoing& keep_going) {
+namespace {
+
+/// Reads a picture as radiance. `advice`: end of the message of a file that cannot be read.
+Environment read_radiance(const std::string& path, const std::string& layer, const std::string& advice,
+                          const WarnOf& warn, const KeepGoing& keep_going) {
     Environment environment;
     try {
         environment = decode_environment(*open_picture(path, {}, layer), keep_going);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& error) {
-        throw ImageFileError(path + ": " + error.what() + "; an environment must be a latitude-longitude picture");
+        throw ImageFileError(path + ": " + error.what() + advice);
     }
     clamp_negative_radiance(environment, path, warn);
     return environment;
+}
+
+}  // namespace
+
+Environment read_environment(const std::string& path, const std::string& layer, const WarnOf& warn,
+                             const KeepGoing& keep_going) {
+    return read_radiance(path, layer, "; an environment must be a latitude-longitude picture", warn, keep_going);
+}
+
+Environment read_picture(const std::string& path, const WarnOf& warn, const KeepGoing& keep_going) {
+    return read_radiance(path, {}, "", warn, keep_going);
 }
 
 namespace {

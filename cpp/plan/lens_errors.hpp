@@ -9,6 +9,7 @@
 #include "../camera/models/generate_rays.hpp"
 #include "../math/hypotenuse.hpp"
 #include "../optics/pupil/pupil_tracer.hpp"
+#include "../optics/trace/film_frame.hpp"
 #include "../optics/trace/lens_path.hpp"
 #include "plan.hpp"
 #include "scene_facts.hpp"
@@ -200,7 +201,9 @@ inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, c
     const double px_per_mm = 0.5 * full.width / static_cast<double>(full.film_half_width);
     const std::vector<double> depths = depths_of(facts, lens);
     const double focused_depth = depths[depths.size() / 2];
-    const LensPath<float> blue(lens, LightDirection::to_scene, kBlue_nm), red(lens, LightDirection::to_scene, kRed_nm);
+    const PathEnds ends = film_path_ends(lens, LightDirection::to_scene);
+    const LensPath<float> blue(lens, LightDirection::to_scene, kBlue_nm, ends),
+        red(lens, LightDirection::to_scene, kRed_nm, ends);
     LensErrors errors;
     errors.film_sine = std::sqrt(static_cast<double>(ideal.axis_irradiance) / std::numbers::pi);
     for (const double field : {0.0, 0.25, 0.5, 0.7, 0.85, 0.97}) {

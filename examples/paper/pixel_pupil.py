@@ -28,10 +28,10 @@ def experiment(device: str) -> Experiment:
     ours = cost.samplings[-1]
     goal = ours.pictures[-1].rmse
     rows = []
-    for rung in cost.samplings:
-        ratio = rung.seconds_to(goal) / ours.seconds_to(goal)
+    for level in cost.samplings:
+        ratio = level.seconds_to(goal) / ours.seconds_to(goal)
         text = "never: light is lost" if math.isinf(ratio) else f"{ratio:.2f} times the time of the fitted outline"
-        rows.append(Row(rung.name, "", text))
+        rows.append(Row(level.name, "", text))
     return Experiment(
         "The pixel pupil",
         (

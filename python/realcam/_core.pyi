@@ -2472,11 +2472,10 @@ class Camera:
         of the exposure. Raises InputError if the entrance pupil lies at infinity.
         """
 
-def pupil_setup(lens: Lens, film_radius_mm: float, on_one_core: bool = False) -> float:
+def pupil_setup(lens: Lens, on_one_core: bool = False) -> None:
     """
-    Computes the table of a lens's exit pupil for film radii up to film_radius_mm, as rendering does after a
-    change of focus or stop; for benchmarks. on_one_core: True: uses one CPU core only. Returns the film radius in mm
-    beyond which no light arrives.
+    Computes the table of a lens's pupil over its own film, as rendering does after a change of focus or stop;
+    for benchmarks. on_one_core: True: uses one CPU core only.
     """
 
 @final
@@ -4252,6 +4251,11 @@ def _did_you_mean(name: str, candidates: Sequence[str]) -> str:
 def _read_environment(path: bytes, layer: str) -> tuple[NDArray[np.float32], list[str]]:
     """
     Internal: use realcam.read_environment. Returns the pixels (H, W, 3) and a list of warnings.
+    """
+
+def _read_picture(path: bytes) -> tuple[NDArray[np.float32], list[str]]:
+    """
+    Internal: use realcam.image_file.read_picture. Returns the pixels (H, W, 3) and a list of warnings.
     """
 
 def _write_picture(path: bytes, image: object, film_tone: bool) -> None:

@@ -24,22 +24,21 @@ def read_environment(path: str | os.PathLike[str], *, layer: str = "") -> np.nda
     or the layer beauty or combined, or the only one. Negative values become 0, with a warning. Raises ImageFileError,
     also if negative values exceed a twentieth of the light, or if a value is not a number up to 1e20.
     """
-    pixels, messages = _core._read_environment(system_name(path), layer)
-    for message in messages:
-        warnings.warn(message, stacklevel=2)
-    return pixels
+    return _with_warnings(*_core._read_environment(system_name(path), layer))
 
 
 def read_picture(path: str | os.PathLike[str]) -> np.ndarray:
     """Reads a picture as (H, W, 3) float32, linear Rec. 709, row 0 at the top. Values of 8 and 16 bits are sRGB with
     white as 1; values of EXR and HDR are not scaled. Raises ImageFileError.
     """
-    try:
-        return read_environment(path)
-    except _core.ImageFileError as error:
-        raise _core.ImageFileError(
-            str(error).removesuffix("; an environment must be a latitude-longitude picture")
-        ) from None
+    return _with_warnings(*_core._read_picture(system_name(path)))
+
+
+def _with_warnings(pixels: np.ndarray, messages: list[str]) -> np.ndarray:
+    """Warns the caller's caller of each message, and returns the pixels."""
+    for message in messages:
+        warnings.warn(message, stacklevel=3)
+    return pixels
 
 
 def write_codes(codes: np.ndarray, path: str | os.PathLike[str], entries: Mapping[str, str]) -> None:

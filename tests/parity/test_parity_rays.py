@@ -118,7 +118,7 @@ def test_traced_rays(name: str) -> None:
     rays = rays_over_film_and_pupil(lens)
     origins, directions = rays.origins_mm, rays.directions
     tried = f"{len(origins):,} rays of each lens"
-    for start, way in (("film", "to the scene"), ("scene", "back")):
+    for start, direction in (("film", "to the scene"), ("scene", "back")):
         cpu = lens.trace(origins, directions, start=start)
         gpu = lens.trace(origins, directions, start=start, device="cuda")
         np.testing.assert_array_equal(gpu.status, cpu.status)
@@ -129,5 +129,5 @@ def test_traced_rays(name: str) -> None:
         turn = np.abs(gpu.directions - cpu.directions)[ok].max()
         path = np.abs(gpu.optical_path_mm / cpu.optical_path_mm - 1)[ok].max()
         for what, worst in (("places", place), ("directions", turn), ("optical paths", path)):
-            held(f"{what} of traced rays {way}", tried, "float64", worst, DOUBLE, "relative")
+            held(f"{what} of traced rays {direction}", tried, "float64", worst, DOUBLE, "relative")
         origins, directions = cpu.origins_mm[ok] + cpu.directions[ok], -cpu.directions[ok]

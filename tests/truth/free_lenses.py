@@ -54,8 +54,8 @@ def rays(count: int, half_width: float, half_angle: float, seed: int) -> np.ndar
     rng = np.random.default_rng(seed)
     at = np.column_stack([rng.uniform(-half_width, half_width, (count, 2)), np.full(count, -5.0)])
     slopes = np.tan(np.deg2rad(rng.uniform(-half_angle, half_angle, (count, 2))))
-    way = np.column_stack([slopes, np.ones(count)])
-    return np.column_stack([at, way / np.linalg.norm(way, axis=1, keepdims=True)])
+    direction = np.column_stack([slopes, np.ones(count)])
+    return np.column_stack([at, direction / np.linalg.norm(direction, axis=1, keepdims=True)])
 
 
 NOLL = [0, 0.1, -0.05, 0.02, 0.03, -0.01, 0.004, -0.003, 0.002, 0.001, 0.005]

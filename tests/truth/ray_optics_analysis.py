@@ -22,7 +22,9 @@ FILE = Path(__file__).with_name("ray_optics_analysis.json.gz")
 OBJECT_MM = 3000.0
 FIELD = 0.6  # of the film's corner
 # Stop points of the rays, in units of the stop's radius: the first four are those of a fan of five.
-PLACES = np.array([(0, -0.5), (0, 0.5), (-0.5, 0), (0.5, 0), (0, 0.8), (0, -0.8), (0.8, 0), (-0.4, 0.4), (0.5, -0.6)])
+STOP_POINTS = np.array(
+    [(0, -0.5), (0, 0.5), (-0.5, 0), (0.5, 0), (0, 0.8), (0, -0.8), (0.8, 0), (-0.4, 0.4), (0.5, -0.6)]
+)
 # ray-optics starts its search for a ray through the stop at the paraxial entrance pupil; in these lenses that ray
 # misses a surface.
 ABSENT = {
@@ -58,8 +60,8 @@ def analysed(lens: Prescription, film_distance: float, field_deg: float) -> Opin
     aim = _Aim(model, lens.stop + 1, point, np.array([0.0, 0.0, pupil_z]))
     chief = aim.ray(np.zeros(2))
     radius = lens.rows[lens.stop].semi_diameter
-    points, paths = np.full((len(PLACES), 2), np.nan), np.full(len(PLACES), np.nan)
-    for i, place in enumerate(PLACES):
+    points, paths = np.full((len(STOP_POINTS), 2), np.nan), np.full(len(STOP_POINTS), np.nan)
+    for i, place in enumerate(STOP_POINTS):
         try:
             ray = aim.ray(radius * place)
         except (ArithmeticError, TraceError):
@@ -76,8 +78,8 @@ def _path_to_sphere(model: Any, ray: Any, chief: Any) -> float:
     whose figure is off by 5e-3 waves where the double Gauss has 20.
     """
     path = sum(index[0] * segment[2] for index, segment in zip(model["seq_model"].rndx, ray[:-1], strict=True))
-    centre, way = chief[-1][0], chief[-2][1]
-    radius = centre[1] / way[1]
+    centre, ray_direction = chief[-1][0], chief[-2][1]
+    radius = centre[1] / ray_direction[1]
     away, direction = ray[-1][0] - centre, ray[-2][1]
     along = away @ direction
     back = along + math.copysign(math.sqrt(along**2 - away @ away + radius**2), radius)
@@ -120,8 +122,10 @@ class _Aim:
     def _trace(self, at: np.ndarray) -> Any:
         from rayoptics.raytr import raytrace
 
-        way = self.pupil + np.array([*at, 0.0]) - self.point
-        return raytrace.trace(self.sequence, self.point, way / np.linalg.norm(way), WAVELENGTH_NM, eps=TOLERANCE)[0]
+        ray_direction = self.pupil + np.array([*at, 0.0]) - self.point
+        return raytrace.trace(
+            self.sequence, self.point, ray_direction / np.linalg.norm(ray_direction), WAVELENGTH_NM, eps=TOLERANCE
+        )[0]
 
 
 def _seidel(model: Any, lens: Prescription, field_deg: float) -> np.ndarray:

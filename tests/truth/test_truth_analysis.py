@@ -129,9 +129,9 @@ OPTILAND_NOLL = {
 
 def test_zernike_coefficients_of_optiland() -> None:
     worst = 0.0
-    for field, wanted in OPTILAND_NOLL.items():
+    for field, expected in OPTILAND_NOLL.items():
         fit = analysis.zernike_fit(GAUSS_F8, field, terms=22)
-        worst = max(worst, *(abs(fit.coefficients_waves[j - 1] - value) for j, value in wanted.items()))
+        worst = max(worst, *(abs(fit.coefficients_waves[j - 1] - value) for j, value in expected.items()))
     figure("Zernike coefficients as Optiland has them", "3 fields, Noll's order", worst, 1e-4, "waves")
 
 
@@ -175,9 +175,9 @@ def test_a_perfect_lens_has_the_mtf_of_its_pupil(f_number: float) -> None:
     # A hyperboloid keeps heights, not sines: the numerical aperture is that of its real edge ray.
     cutoff = 2e6 / nm * np.abs(bundle.edge_slopes).max()
     share = np.linspace(0, 1.05, 22)
-    wanted = 2 / np.pi * (np.arccos(np.minimum(share, 1)) - share * np.sqrt(np.maximum(1 - share**2, 0)))
+    expected = 2 / np.pi * (np.arccos(np.minimum(share, 1)) - share * np.sqrt(np.maximum(1 - share**2, 0)))
     data = analysis.mtf(lens, 0.0, share * cutoff, wavelengths_nm=nm)
-    worst = max(np.abs(data.tangential[0, 0] - wanted).max(), np.abs(data.limit_sagittal[0] - wanted).max())
+    worst = max(np.abs(data.tangential[0, 0] - expected).max(), np.abs(data.limit_sagittal[0] - expected).max())
     figure(f"MTF of a perfect lens at f/{f_number:g} and its limit", "22 frequencies", worst, 0.005, "of contrast")
 
 

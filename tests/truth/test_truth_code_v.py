@@ -63,8 +63,8 @@ def check_ray(field_tangent: float, rows: list[listing.Row], trace: Trace) -> No
             assert (out.optical_path_mm[0] - path) / index == pytest.approx(length, abs=1e-5), i + 1
         path = out.optical_path_mm[0]
         normal = np.array([0, 0, 1]) - LENS.surfaces[i].curvature_per_mm * place
-        for way, listed in ((before, incidence), (out.directions[0], refraction)):
-            sine = np.linalg.norm(np.cross(way, normal)) / np.linalg.norm(normal)
+        for ray_direction, listed in ((before, incidence), (out.directions[0], refraction)):
+            sine = np.linalg.norm(np.cross(ray_direction, normal)) / np.linalg.norm(normal)
             assert math.degrees(math.asin(sine)) == pytest.approx(listed, abs=0.51e-2), i + 1
         before = out.directions[0]
 

@@ -80,7 +80,7 @@ def test_light_goes_back_the_way_it_came(case):
     there = lens.trace(rays[:, :3], rays[:, 3:], start="scene")
     back = lens.trace(there.origins_mm + 2 * there.directions, -there.directions, start="film")
     assert (back.status == rc.RayStatus.OK).all()
-    way = ((rays[:, 2] - back.origins_mm[:, 2]) / back.directions[:, 2])[:, None]
+    direction = ((rays[:, 2] - back.origins_mm[:, 2]) / back.directions[:, 2])[:, None]
     # Light of a point of the first surface; over 100 mm a rounding of a direction is 1e-14 mm.
-    assert np.abs(back.origins_mm + way * back.directions - rays[:, :3]).max() < 1e-10
+    assert np.abs(back.origins_mm + direction * back.directions - rays[:, :3]).max() < 1e-10
     assert np.abs(back.directions + rays[:, 3:]).max() < 1e-12

@@ -73,9 +73,9 @@ def test_reference_sphere_through_the_paraxial_exit_pupil() -> None:
     for angle in (5.0, 10.0, 14.0):
         chief = lens.aim([[0.0, 0.0]], angle)
         out = lens.trace(chief.origins_mm, chief.directions, start="scene")
-        point, way = out.origins_mm[0], out.directions[0]
-        at_pupil = point + (first.exit_pupil_position_mm - point[2]) / way[2] * way
-        at_film = point + (lens.vertices_mm[-1] + film - point[2]) / way[2] * way
+        point, direction = out.origins_mm[0], out.directions[0]
+        at_pupil = point + (first.exit_pupil_position_mm - point[2]) / direction[2] * direction
+        at_film = point + (lens.vertices_mm[-1] + film - point[2]) / direction[2] * direction
         ours = lens.wavefront(angle, film_distance_mm=film, pattern="hexapolar", samples=8)
         theirs = lens.wavefront(angle, film_distance_mm=film, pattern="hexapolar", samples=8, exit_pupil="paraxial")
         assert theirs.centre_mm == pytest.approx(tuple(at_film), abs=1e-9)
@@ -89,9 +89,9 @@ def test_reference_sphere_through_the_paraxial_exit_pupil() -> None:
         good = ours.status == rc.RayStatus.OK
         off = np.linalg.norm(np.cross(rays.origins_mm - at_film, rays.directions), axis=1)
         curvature = 1 / theirs.reference_radius_mm - 1 / ours.reference_radius_mm
-        wanted = -0.5 * off**2 * curvature * 1e6 / ours.wavelength_nm
+        expected = -0.5 * off**2 * curvature * 1e6 / ours.wavelength_nm
         difference = theirs.opd_waves - ours.opd_waves
-        np.testing.assert_allclose(difference[good], wanted[good], rtol=2e-5, atol=1e-8)
-        assert np.abs(wanted[good]).max() > 1e-6
+        np.testing.assert_allclose(difference[good], expected[good], rtol=2e-5, atol=1e-8)
+        assert np.abs(expected[good]).max() > 1e-6
     with pytest.raises(rc.InputError, match='unknown exit_pupil "entrance"; expected real or paraxial'):
         lens.wavefront(exit_pupil="entrance")

@@ -56,7 +56,7 @@ def test_ray_fans() -> None:
 def test_spots() -> None:
     worst, compared = 0.0, 0
     for name, (field, said) in OPINIONS.items():
-        spot = rc.Lens.load(name).spot(field, object_distance_m=OBJECT_M, pupil=peer.PLACES)
+        spot = rc.Lens.load(name).spot(field, object_distance_m=OBJECT_M, pupil=peer.STOP_POINTS)
         passed = spot.status == rc.RayStatus.OK
         if np.isnan(said.points[passed]).any():
             continue
@@ -73,7 +73,7 @@ def test_wavefronts() -> None:
     worst = 0.0
     for name, (field, said) in OPINIONS.items():
         lens = rc.Lens.load(name)
-        front = lens.wavefront(field, object_distance_m=OBJECT_M, pupil=peer.PLACES)
+        front = lens.wavefront(field, object_distance_m=OBJECT_M, pupil=peer.STOP_POINTS)
         off = np.abs(front.opd_waves - said.opd / (1e-6 * lens.wavelength_nm))
         worst = max(worst, float(np.nanmax(off)))
     # Paths of 3 to 5 m from the object, with 53 bits: 1e-12 mm a piece, 2e-9 waves, over twenty surfaces.

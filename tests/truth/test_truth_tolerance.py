@@ -56,5 +56,5 @@ def test_each_copy_is_good_or_bad_to_optiland_too(mtf_of_copies: np.ndarray) -> 
     focus at a tolerance of 1e-5 of the merit: copies differ by some hundredths, and which are bad does not."""
     theirs = np.array(PEER["mtf"])
     assert np.abs(mtf_of_copies - theirs).max() < 0.08
-    for field, way in np.ndindex(theirs.shape[1:]):
-        assert np.corrcoef(mtf_of_copies[:, field, way], theirs[:, field, way])[0, 1] > 0.95
+    for field, direction in np.ndindex(theirs.shape[1:]):
+        assert np.corrcoef(mtf_of_copies[:, field, direction], theirs[:, field, direction])[0, 1] > 0.95

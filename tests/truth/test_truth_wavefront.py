@@ -161,7 +161,7 @@ def test_spherical_aberration_goes_over_into_its_third_order() -> None:
 # Optiland 0.6.3, chief_ray strategy, of the prescription "phone-4mm" with constant indices (12 aspheres, stop at the
 # front): W in waves at five points of the stop. As in realcam, the reference sphere is centred on the chief ray's image
 # point; it goes through the centre of the paraxial exit pupil.
-PLACES = np.array([(0, -0.9), (0.9, 0), (0, 0.5), (-0.3, -0.4), (0.7, 0)])
+STOP_POINTS = np.array([(0, -0.9), (0.9, 0), (0, 0.5), (-0.3, -0.4), (0.7, 0)])
 OPTILAND = {
     (math.inf, 0.0): (-0.141604427, -0.141604427, -0.121326875, -0.121326875, -0.140645018),
     (math.inf, 10.0): (0.050607516, -0.029136872, -0.043223033, -0.084815637, -0.015040780),
@@ -177,8 +177,8 @@ def test_an_aspheric_lens_as_optiland_has_it() -> None:
     pupil = np.array([0, 0, lens.first_order().exit_pupil_position_mm])
     worst = 0.0
     for (object_m, angle), listed in OPTILAND.items():
-        wavefront = lens.wavefront(angle, object_distance_m=object_m, pupil=PLACES)
-        aimed = lens.aim(PLACES, angle, object_distance_m=object_m)
+        wavefront = lens.wavefront(angle, object_distance_m=object_m, pupil=STOP_POINTS)
+        aimed = lens.aim(STOP_POINTS, angle, object_distance_m=object_m)
         out = lens.trace(aimed.origins_mm, aimed.directions, start="scene")
         # From one sphere to the other about the same centre: R - sqrt(R^2 - p^2) of each, p the ray's distance.
         offset = np.linalg.norm(np.cross(out.origins_mm - wavefront.centre_mm, out.directions), axis=1)

@@ -89,8 +89,8 @@ def test_every_library_inside_has_a_licence_that_allows_it() -> None:
         texts = [file for file in FILES.namelist() if f".dist-info/licenses/{library}/" in file]
         assert texts, f"{library}: its licence is not in the wheel"
         assert not any("GPL" in Path(text).name for text in texts)
-        wanted = {"Apache-2.0": b"Apache License", "libpng": b"libpng"}[LICENCES[library]]
-        assert any(wanted in FILES.read(text) for text in texts)
+        expected = {"Apache-2.0": b"Apache License", "libpng": b"libpng"}[LICENCES[library]]
+        assert any(expected in FILES.read(text) for text in texts)
 
 
 def test_what_realcam_demo_wants_is_inside() -> None:

@@ -11,7 +11,10 @@
 #include "../../camera/film/camera.hpp"
 #include "../../camera/models/pinhole_camera.hpp"
 #include "../../embree/lens_rays.hpp"
+#include "../../math/hypotenuse.hpp"
+#include "../../optics/pupil/film_symmetry.hpp"
 #include "../../optics/pupil/pupil.hpp"
+#include "../../optics/pupil/pupil_grid.hpp"
 #include "../../render/settings/setting_names.hpp"
 #include "../bindings.hpp"
 #include "../values/arrays.hpp"
@@ -332,16 +335,19 @@ perspective: a rotation about it causes no parallax. None if it lies at infinity
         .def("__repr__", [](const Camera& c) { return text_of(c); });
     m.def(
         "pupil_setup",
-        [](const LensSystem& lens, double film_radius_mm, bool on_one_core) {
+        [](const LensSystem& lens, bool on_one_core) {
             const Unlocked unlocked;
             PupilTracer tracer = fast_pupil_tracer();
             if (on_one_core) tracer.for_each = PupilTracer().for_each;
-            return Pupil(lens, film_radius_mm, std::move(tracer)).image_radius();
+            const Vec2<double> corner = {0.5 * lens.film_width, 0.5 * lens.film_height};
+            if (has_radial_pupil(lens))
+                Pupil(lens, hypotenuse(corner.x, corner.y), std::move(tracer));
+            else
+                PupilGrid(lens, {{-corner.x, -corner.y}, corner}, mirror_planes(lens), std::move(tracer));
         },
-        "lens"_a, "film_radius_mm"_a, "on_one_core"_a = false,
-        R"(Computes the table of a lens's exit pupil for film radii up to film_radius_mm, as rendering does after a
-change of focus or stop; for benchmarks. on_one_core: True: uses one CPU core only. Returns the film radius in mm
-beyond which no light arrives.)");
+        "lens"_a, "on_one_core"_a = false,
+        R"(Computes the table of a lens's pupil over its own film, as rendering does after a change of focus or stop;
+for benchmarks. on_one_core: True: uses one CPU core only.)");
 }
 
 }  // namespace realcam::bindings

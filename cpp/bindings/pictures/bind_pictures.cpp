@@ -17,21 +17,34 @@ using namespace py::literals;
 
 namespace {
 
-/// Returns the pixels (H, W, 3) of an environment map, linear, and the reader's warnings. `layer`: of an OpenEXR file;
-/// "" for the main image.
-Typed<"tuple[NDArray[float32], list[str]]", py::tuple> read_environment(const py::bytes& path,
-                                                                        const std::string& layer) {
-    const std::string file = path;
+/// Pixels (H, W, 3), linear, and the reader's warnings.
+using PixelsAndWarnings = Typed<"tuple[NDArray[float32], list[str]]", py::tuple>;
+
+/// Returns the pixels that `read` reads, an Environment; it receives a function for its warnings.
+template <class Read>
+PixelsAndWarnings pixels_of(const Read& read) {
     Environment environment;
     std::vector<std::string> warnings;
     {
         const Unlocked unlocked;
-        environment = image_io::read_environment(
-            file, layer, [&](const std::string& warning) { warnings.push_back(warning); }, heed_signals);
+        environment = read([&](const std::string& warning) { warnings.push_back(warning); });
     }
     py::array_t<float> pixels({environment.height, environment.width, 3});
     std::memcpy(pixels.mutable_data(), environment.pixels.data(), environment.pixels.size() * sizeof(Vec3f));
     return py::make_tuple(pixels, warnings);
+}
+
+/// `layer`: of an OpenEXR file; "" for the main image.
+PixelsAndWarnings read_environment(const py::bytes& path, const std::string& layer) {
+    return pixels_of([&, file = std::string(path)](const image_io::WarnOf& warn) {
+        return image_io::read_environment(file, layer, warn, heed_signals);
+    });
+}
+
+PixelsAndWarnings read_picture(const py::bytes& path) {
+    return pixels_of([file = std::string(path)](const image_io::WarnOf& warn) {
+        return image_io::read_picture(file, warn, heed_signals);
+    });
 }
 
 using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
@@ -128,6 +141,8 @@ void write_codes(const py::bytes& path, const py::array_t<std::uint8_t, py::arra
 void bind_pictures(py::module_& m) {
     m.def("_read_environment", &read_environment, "path"_a, "layer"_a,
           "Internal: use realcam.read_environment. Returns the pixels (H, W, 3) and a list of warnings.");
+    m.def("_read_picture", &read_picture, "path"_a,
+          "Internal: use realcam.image_file.read_picture. Returns the pixels (H, W, 3) and a list of warnings.");
     m.def("_write_picture", &write_picture, "path"_a, "image"_a, "film_tone"_a,
           "Internal: use Image.save. film_tone: True for the tone curve \"film\", False for \"linear\".");
     m.def("_write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a,

@@ -14,8 +14,8 @@ namespace REALCAM_NAMESPACE {
 /// Exit pupil as seen from a film point, in optical direction cosines of light that travels towards the film: x and y
 /// components in the tangent plane of the film.
 struct FilmPupil {
-    /// Irradiance for unit radiance of the whole scene: the area of the pupil. At the centre of a lens of revolution it
-    /// is pi sin^2(theta').
+    /// Irradiance for unit radiance of the whole scene: the area of the pupil. At the centre of a rotationally
+    /// symmetric lens it is pi sin^2(theta').
     double irradiance = 0;
     std::vector<std::array<Vec2<double>, 2>> outline;  ///< segments of the edge of the light, each with its end points
 };

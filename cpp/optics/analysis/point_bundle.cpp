@@ -22,7 +22,7 @@ PointBundle::PointBundle(const LensSystem& lens, double wavelength_nm, const Fie
       real_(AimingPath::real(path_)) {
     index = lens.indices(wavelength_nm).back();
     wave_number = 2e6 * std::numbers::pi * index / wavelength_nm;
-    const FieldRays rays = probe(lens, wavelength_nm, field, probe_rays, loop);
+    const FieldRays rays = probe(lens, wavelength_nm, field, probe_rays, loop);  // may increase probe_rays
     plane_ = rays.on_film(rays.chief, film_distance).z;
     chief_entry = rays.chief.entry;
     const FilmRay at_chief = on_film(rays.chief.origin, rays.chief.direction, rays.chief.path);
@@ -56,7 +56,7 @@ const LensSystem& PointBundle::with_known_glasses(const LensSystem& lens, double
     return lens;
 }
 
-FieldRays PointBundle::probe(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, int probe_rays,
+FieldRays PointBundle::probe(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, int& probe_rays,
                              const RayLoop& loop) {
     try {
         FieldRays rays = field_rays(lens, wavelength_nm, field, square_grid(probe_rays, loop), loop);
@@ -66,11 +66,13 @@ FieldRays PointBundle::probe(const LensSystem& lens, double wavelength_nm, const
     } catch (const InputError&) {
         // If a denser probe cannot help, field_rays throws the same error again below.
     }
-    return field_rays(lens, wavelength_nm, field, square_grid(kDenseProbeRays, loop), loop);
+    probe_rays = kDenseProbeRays;
+    return field_rays(lens, wavelength_nm, field, square_grid(probe_rays, loop), loop);
 }
 
 void PointBundle::measure(const FieldRays& rays, int probe_rays) {
     Entry low = {kInfinity, kInfinity}, high = {-kInfinity, -kInfinity};
+    Vec2<double> stop_low = low, stop_high = high;  // in units of the stop's radius
     slope_low = low, slope_high = high;
     spot = centroid = {0, 0};
     double weight = 0;
@@ -82,6 +84,7 @@ void PointBundle::measure(const FieldRays& rays, int probe_rays) {
             highest = {std::max(highest.x, v.x), std::max(highest.y, v.y)};
         };
         widen(low, high, ray.entry);
+        widen(stop_low, stop_high, {rays.pattern[i].x, rays.pattern[i].y});
         const FilmRay found = from_chief(true, ray.origin, ray.direction, ray.path);
         widen(slope_low, slope_high, as_wave(found).slope);
         spot = {std::max(spot.x, std::fabs(found.at.x)), std::max(spot.y, std::fabs(found.at.y))};
@@ -90,10 +93,16 @@ void PointBundle::measure(const FieldRays& rays, int probe_rays) {
     }
     centroid = {centroid.x / weight, centroid.y / weight};
     middle = {0.5 * (low.x + high.x), 0.5 * (low.y + high.y)};
-    // Margin beyond the outermost rays: half a cell on either side, and a small one in case all rays lie on one line.
-    const double beyond = 1 + 2.0 / probe_rays, min_margin = 1e-3 * hypotenuse(high.x - low.x, high.y - low.y);
+    // Margin beyond the outermost rays, and a small one in case all rays lie on one line. The light may continue by
+    // almost a cell of the probe on either side.
+    const double min_margin = 1e-3 * hypotenuse(high.x - low.x, high.y - low.y);
+    const auto half_side = [&](double extent, double extent_on_stop) {
+        const double cells = 0.5 * probe_rays * extent_on_stop;  // between the outermost rays
+        const double margin = std::max(2.0 / probe_rays, cells > 0.5 ? 2 / cells : 0.0);
+        return (1 + margin) * 0.5 * extent + min_margin;
+    };
     if (mirrored) middle.x = centroid.x = 0;
-    reach = {beyond * 0.5 * (high.x - low.x) + min_margin, beyond * 0.5 * (high.y - low.y) + min_margin};
+    reach = {half_side(high.x - low.x, stop_high.x - stop_low.x), half_side(high.y - low.y, stop_high.y - stop_low.y)};
 }
 
 FilmRay PointBundle::on_film(Vec3d origin, Vec3d direction, double path) const {

@@ -96,11 +96,13 @@ private:
     /// Returns the lens. Throws InputError if the index of a glass is not known at the wavelength.
     static const LensSystem& with_known_glasses(const LensSystem& lens, double wavelength_nm);
 
-    /// Traces probe rays over the whole stop, and denser ones if few of them pass.
-    static FieldRays probe(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, int probe_rays,
+    /// Traces probe rays over the whole stop, and denser ones if few of them pass. `probe_rays`: number of rays across
+    /// the stop; it becomes that of the rays returned.
+    static FieldRays probe(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, int& probe_rays,
                            const RayLoop& loop);
 
-    /// Sets `middle`, `reach`, `centroid`, `spot`, and the bounds of slopes from probe rays.
+    /// Sets `middle`, `reach`, `centroid`, `spot`, and the bounds of slopes from probe rays on a square_grid of
+    /// `probe_rays` rays across the stop.
     void measure(const FieldRays& rays, int probe_rays);
 
     /// Starts N rays at their entry points.

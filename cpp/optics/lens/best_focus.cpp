@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -57,64 +58,73 @@ private:
            slope_ = 0;  ///< height and slope at the front vertex of the paraxial ray of height 1 at the stop
 };
 
+/// Edge of the light between two squared heights at the stop, mm^2: rays pass at `open`, and are blocked at `shut`.
+struct Edge {
+    double open, shut;
+    double middle() const { return 0.5 * (open + shut); }
+};
+
+constexpr int kEdgesAtOnce = 8;  // lanes of a bisection
+
+/// Bisects up to kEdgesAtOnce edges to the last digit: a focus that jumps as single rays appear and vanish cannot be
+/// searched for.
+void bisect(const AxialRays& rays, std::span<Edge> edges) {
+    // With few edges, spare lanes evaluate the midpoints that the next bisections may need. Each edge has a binary tree
+    // of midpoints, whose children are the midpoints of the two halves. The half that follows if the midpoint passes is
+    // the first child.
+    constexpr int kHalvings = 44;
+    const int count = static_cast<int>(edges.size());
+    const int depth = count == 1 ? 3 : count == 2 ? 2 : 1, nodes = (1 << depth) - 1;
+    for (int k = 0; k < kHalvings; k += depth) {
+        Edge tree[kEdgesAtOnce] = {};
+        double heights[kEdgesAtOnce] = {};
+        for (int e = 0; e < count; ++e)
+            for (int n = 0; n < nodes; ++n) {
+                const Edge& above = tree[e * nodes + (n - 1) / 2];
+                Edge& node = tree[e * nodes + n];
+                node = n == 0       ? edges[static_cast<std::size_t>(e)]
+                       : n % 2 == 1 ? Edge{above.middle(), above.shut}
+                                    : Edge{above.open, above.middle()};
+                heights[e * nodes + n] = std::sqrt(node.middle());
+            }
+        LensRays<double, kEdgesAtOnce> fine;
+        rays.trace(heights, fine);
+        for (int e = 0; e < count; ++e)
+            for (int n = 0, level = 0; level < std::min(depth, kHalvings - k); ++level) {
+                const bool passes = fine.status[e * nodes + n] == 0;
+                Edge& edge = edges[static_cast<std::size_t>(e)];
+                (passes ? edge.open : edge.shut) = tree[e * nodes + n].middle();
+                n = 2 * n + (passes ? 1 : 2);
+            }
+    }
+}
+
 /// Returns the intervals of the squared height at the stop, mm^2, in which rays pass, in ascending order up to the
 /// height `max_height`, mm.
 std::vector<std::pair<double, double>> passing_intervals(const AxialRays& rays, double max_height) {
-    constexpr int kRays = 256, kEdges = 8, kHalvings = 44;
+    constexpr int kRays = 256;
     const double cell = max_height * max_height / kRays;
     LensRays<double, kRays> coarse;
     double height[kRays];
     for (int i = 0; i < kRays; ++i) height[i] = std::sqrt((i + 0.5) * cell);
     rays.trace(height, coarse);
-    // Edges of the light are bisected to the last digit: a focus that jumps as single rays appear and vanish cannot be
-    // searched for. For each edge, squared heights on its two sides: rays pass at the first, and are blocked at the
-    // second.
-    double open[kEdges], shut[kEdges];
-    int edges = 0;
+    std::vector<Edge> edges;
     for (int i = 1; i < kRays; ++i) {
         const bool previous_passes = coarse.status[i - 1] == 0, passes = coarse.status[i] == 0;
-        if (previous_passes == passes || edges == kEdges) continue;
-        open[edges] = (i + (passes ? 0.5 : -0.5)) * cell;
-        shut[edges] = (i + (passes ? -0.5 : 0.5)) * cell;
-        ++edges;
+        if (previous_passes != passes)
+            edges.push_back({(i + (passes ? 0.5 : -0.5)) * cell, (i + (passes ? -0.5 : 0.5)) * cell});
     }
-    // With few edges, spare lanes evaluate the midpoints that the next bisections may need. Each edge has a binary tree
-    // of midpoints, whose children are the midpoints of the two halves. The half that follows if the midpoint passes is
-    // the first child.
-    const int depth = edges == 1 ? 3 : edges == 2 ? 2 : 1, nodes = (1 << depth) - 1;
-    for (int k = 0; k < kHalvings && edges > 0; k += depth) {
-        struct Node {
-            double open, shut;
-            double middle() const { return 0.5 * (open + shut); }
-        } tree[kEdges] = {};
-        double heights[kEdges] = {};
-        for (int e = 0; e < edges; ++e)
-            for (int n = 0; n < nodes; ++n) {
-                const Node& above = tree[e * nodes + (n - 1) / 2];
-                Node& node = tree[e * nodes + n];
-                node = n == 0       ? Node{open[e], shut[e]}
-                       : n % 2 == 1 ? Node{above.middle(), above.shut}
-                                    : Node{above.open, above.middle()};
-                heights[e * nodes + n] = std::sqrt(node.middle());
-            }
-        LensRays<double, kEdges> fine;
-        rays.trace(heights, fine);
-        for (int e = 0; e < edges; ++e)
-            for (int n = 0, level = 0; level < std::min(depth, kHalvings - k); ++level) {
-                const bool passes = fine.status[e * nodes + n] == 0;
-                (passes ? open : shut)[e] = tree[e * nodes + n].middle();
-                n = 2 * n + (passes ? 1 : 2);
-            }
-    }
+    for (std::size_t first = 0; first < edges.size(); first += kEdgesAtOnce)
+        bisect(rays, std::span(edges).subspan(first, std::min<std::size_t>(kEdgesAtOnce, edges.size() - first)));
     std::vector<std::pair<double, double>> intervals;
     bool inside = coarse.status[0] == 0;
     if (inside) intervals.emplace_back(0.0, 0.0);
-    for (int e = 0; e < edges; ++e) {
+    for (const Edge& edge : edges) {
         inside = !inside;
         if (inside)
-            intervals.emplace_back(open[e], 0.0);
+            intervals.emplace_back(edge.open, 0.0);
         else
-            intervals.back().second = open[e];
+            intervals.back().second = edge.open;
     }
     if (inside) intervals.back().second = max_height * max_height;
     return intervals;

@@ -25,7 +25,7 @@ struct GaussRule {
 /// Returns the distance from the last vertex to the film plane on which the real rays from an axial point make the
 /// smallest RMS spot, mm. `object_distance`: from the point to the front vertex, mm, may be infinite. The iris is
 /// treated as round. Returns NaN if no ray passes, or for an afocal lens with the object at infinity. The lens must be
-/// a centred lens of revolution.
+/// rotationally symmetric.
 ///
 /// The rays fill the aperture uniformly. Behind the lens they are straight lines x(z) = x0 + m z, so the plane of the
 /// smallest mean square is z = -integral(x0 m) / integral(m^2).

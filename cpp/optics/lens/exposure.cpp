@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../coating/coated_surface.hpp"
+#include "../trace/film_frame.hpp"
 #include "../trace/lens_path.hpp"
 
 namespace realcam {
@@ -36,13 +37,17 @@ std::vector<bool> passing(const LensPath<double>& path, double film_distance, co
 }  // namespace
 
 double axis_irradiance(LensSystem lens) {
-    lens.require_rotational("the irradiance at the centre of the film");
+    if (!has_axis(lens) || !lens.film_placement.is_in_place())
+        lens.require_rotational("the irradiance at the centre of the film");
     lens.iris.blades = 0;
-    const LensPath<double> path(lens, LightDirection::to_scene, lens.wavelength_nm);
+    const LensPath<double> path(lens, LightDirection::to_scene, lens.wavelength_nm,
+                                film_path_ends(lens, LightDirection::to_scene));
     const Surface& last = lens.surfaces.back();
     const double n = path.entry_index, rim = last.clear_semi_diameter;
-    // Optical sine of the steepest ray that can hit the last surface, whose rim may bulge towards the film.
-    const double rim_distance = lens.film_distance - std::max(last.sag(rim), 0.0);
+    // Optical sine of the steepest ray that can hit the last surface, whose rim may bulge towards the film. The film of
+    // a single mirror lies in front of it.
+    const double sag = lens.film_distance < 0 ? -last.sag(rim) : last.sag(rim);
+    const double rim_distance = std::fabs(lens.film_distance) - std::max(sag, 0.0);
     const double max_sine = rim_distance > 0 ? n * std::sin(std::atan(1.02 * rim / rim_distance)) : n;
     // Linear steps find obstructions; geometric steps find the smallest stop.
     constexpr int kLinear = 1024, kGeometric = 512;

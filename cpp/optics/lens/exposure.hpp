@@ -29,7 +29,8 @@ private:
 
 /// Returns the irradiance at the film's centre for unit radiance: the area, in optical direction cosines, of the cone
 /// of rays that passes the lens. For an unobstructed lens in air that is pi sin^2(theta'). It is computed with real
-/// meridional rays; the iris is treated as round. Throws InputError unless the lens is a centred lens of revolution.
+/// meridional rays; the iris is treated as round. The film may lie before the last mirror. Throws InputError if the
+/// lens is not rotationally symmetric otherwise.
 double axis_irradiance(LensSystem lens);
 
 }  // namespace REALCAM_NAMESPACE

@@ -43,9 +43,9 @@ LensSystem with_film_radius(LensSystem lens, double radius_of_curvature);
 LensSystem scaled(const LensSystem& lens, double factor);
 
 /// Returns the reversed lens, its last surface towards the scene, focused at infinity: the film lies where light from
-/// infinity is sharpest, or `film_distance` mm behind the last vertex. Throws InputError unless the lens is a centred
-/// lens of revolution. Throws LensFileError if the medium at the film is not air, or if light from infinity has no real
-/// image behind the reversed lens and no distance is given.
+/// infinity is sharpest, or `film_distance` mm behind the last vertex. Throws InputError unless the lens is
+/// rotationally symmetric. Throws LensFileError if the medium at the film is not air, or if light from infinity has no
+/// real image behind the reversed lens and no distance is given.
 LensSystem reversed(const LensSystem& lens, std::optional<double> film_distance = {});
 
 /// Returns the lens with surfaces inserted in front of surface `index`, counted from 0, or behind the last one. `gap`:

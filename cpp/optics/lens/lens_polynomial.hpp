@@ -20,7 +20,7 @@ public:
     static constexpr int kMaxDegree =
         4;  ///< largest LensPolynomialView::degree: ninth powers of film and pupil coordinates
 
-    /// Traces rays and fits the polynomials to them. The lens must be a centred lens of revolution; `pupil` is its
+    /// Traces rays and fits the polynomials to them. The lens must be rotationally symmetric; `pupil` is its
     /// pupil for film points up to `film_radius` mm from the axis. Throws InputError if too few rays pass.
     LensPolynomial(const LensSystem& lens, const PupilView& pupil, double film_radius);
 

@@ -56,8 +56,9 @@ struct Meridian {
 struct ParabasalData {
     std::array<Meridian, 2> meridians;  ///< the one nearer to the x axis first
     double squeeze;  ///< anamorphic ratio: focal length of the second meridian over that of the first
-    /// Data of both meridians combined, as for a lens of revolution: f-number and focal length are geometric means, so
-    /// that the f-number is that of the exposure; positions are means of both meridians, along the unfolded axis.
+    /// Data of both meridians combined, as for a rotationally symmetric lens: f-number and focal length are geometric
+    /// means, so that the f-number is that of the exposure; positions are means of both meridians, along the unfolded
+    /// axis.
     FirstOrder mean;
 };
 

@@ -42,7 +42,7 @@ struct FirstOrder {
     bool is_afocal() const { return std::isinf(effective_focal_length); }
 };
 
-/// Returns the first-order data. For a centred lens of revolution they are those of paraxial rays; a tilt or shift of
+/// Returns the first-order data. For a rotationally symmetric lens they are those of paraxial rays; a tilt or shift of
 /// the whole lens in front of the film changes nothing. For any other lens they are those of rays close to the chief
 /// ray of the film's centre, the means of both meridians (parabasal.hpp). Throws InputError if there is no such chief
 /// ray.

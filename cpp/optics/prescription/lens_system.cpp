@@ -24,7 +24,7 @@ std::string LensSystem::asymmetry() const {
 
 void LensSystem::require_rotational(const std::string& what) const {
     if (const std::string why = asymmetry(); !why.empty())
-        throw InputError(what + " needs a centred lens of revolution; " + why);
+        throw InputError(what + " needs a rotationally symmetric lens; " + why);
 }
 
 std::vector<double> LensSystem::vertices() const {

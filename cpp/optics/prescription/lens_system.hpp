@@ -97,12 +97,12 @@ struct LensSystem {
     /// Radius of the stop's opening, limited by its rim, mm.
     double open_stop_radius() const { return std::min(stop_semi_diameter, stop().clear_semi_diameter); }
 
-    /// Returns the reason why this is not a centred lens of revolution, naming the first surface that breaks the
-    /// symmetry, for example "surface 3 is tilted"; empty if it is one.
+    /// Returns the reason why this lens is not rotationally symmetric, naming the first surface that breaks the
+    /// symmetry, for example "surface 3 is tilted"; empty if it is.
     std::string asymmetry() const;
-    /// True if this is a centred lens of revolution.
+    /// True if this lens is rotationally symmetric.
     bool is_rotational() const { return asymmetry().empty(); }
-    /// Throws InputError unless this is a centred lens of revolution: "`what` needs a centred lens of revolution;
+    /// Throws InputError unless this lens is rotationally symmetric: "`what` needs a rotationally symmetric lens;
     /// surface 3 is tilted".
     void require_rotational(const std::string& what) const;
 
@@ -119,7 +119,7 @@ struct LensSystem {
     std::vector<double> indices(double wavelength_nm) const;
 };
 
-/// Returns the centred lens of revolution with the yz section of each surface: no tilts or decentres of surfaces or
+/// Returns the rotationally symmetric lens with the yz section of each surface: no tilts or decentres of surfaces or
 /// film, and no asymmetric form terms or apertures. It serves for numbers that characterise the lens.
 LensSystem centred(LensSystem lens);
 

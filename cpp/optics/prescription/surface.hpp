@@ -75,7 +75,7 @@ struct Surface {
         return std::any_of(aspheric.begin(), aspheric.end(), [](double a) { return a != 0; });
     }
 
-    /// Returns the reason why a lens with this surface is not a centred lens of revolution, for example "is tilted";
+    /// Returns the reason why a lens with this surface is not rotationally symmetric, for example "is tilted";
     /// empty if it may be one.
     std::string asymmetry() const;
 

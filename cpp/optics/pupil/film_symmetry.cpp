@@ -10,7 +10,7 @@ bool has_radial_pupil(const LensSystem& lens) {
 
 void require_radial_pupil(const LensSystem& lens, const std::string& what) {
     if (!has_radial_pupil(lens))
-        throw InputError(what + " needs a centred lens of revolution before a flat film; " +
+        throw InputError(what + " needs a rotationally symmetric lens with a flat film; " +
                          (lens.is_rotational() ? "its film is curved" : lens.asymmetry()));
 }
 

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <optional>
 
-#include "../../camera/effects/dispersion/illuminant.hpp"
+#include "../../number_text.hpp"
 #include "../../optics/coating/coated_surface.hpp"
 #include "../../optics/trace/lens_dispersion.hpp"
 

@@ -1,6 +1,6 @@
 """Cost of accuracy: render time and error of the same shot at many levels of simulation."""
 
-from .ladder import AccuracyCost, accuracy_cost
-from .measurements import Measured, Rung
+from .cost import AccuracyCost, accuracy_cost
+from .measurements import LevelMeasurements, Measured
 
-__all__ = ["AccuracyCost", "Measured", "Rung", "accuracy_cost"]
+__all__ = ["AccuracyCost", "LevelMeasurements", "Measured", "accuracy_cost"]

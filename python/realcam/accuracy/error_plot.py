@@ -11,28 +11,28 @@ from matplotlib.ticker import LogLocator
 
 from ..analysis import style
 from ..analysis.fields import Doubles
-from .measurements import Rung
+from .measurements import LevelMeasurements
 
 # Ratio of the longest time to which the lines are extrapolated to the longest measured time.
 EXTRAPOLATION = 16.0
 
 
-def draw_errors(figure: SubFigure, rungs: tuple[Rung, ...]) -> None:
+def draw_errors(figure: SubFigure, levels: tuple[LevelMeasurements, ...]) -> None:
     """Draws one plot per group of levels. The recommended level is in every plot, for comparison."""
-    groups = list(dict.fromkeys(rung.group for rung in rungs))
+    groups = list(dict.fromkeys(level.group for level in levels))
     rows = 2 if len(groups) > 3 else 1
     grid = figure.subplots(rows, -(-len(groups) // rows), sharex=True, sharey=True, squeeze=False)
-    end = EXTRAPOLATION * max(rung.pictures[-1].seconds for rung in rungs)
+    end = EXTRAPOLATION * max(level.pictures[-1].seconds for level in levels)
     for cell in grid.ravel()[len(groups) :]:
         cell.set_axis_off()
     plots = [
-        (axes, group, [rung for rung in rungs if rung.group == group or rung.is_recommended])
+        (axes, group, [level for level in levels if level.group == group or level.is_recommended])
         for axes, group in zip(grid.ravel(), groups, strict=False)
     ]
     for axes, group, shown in plots:
-        _draw_frontier(axes, rungs)
-        for number, rung in enumerate(shown):
-            _draw_line(axes, rung, _colour(rung, number), end)
+        _draw_frontier(axes, levels)
+        for number, level in enumerate(shown):
+            _draw_line(axes, level, _colour(level, number), end)
         axes.set(xscale="log", yscale="log", title=group)
         style.plain_decades(axes.yaxis)
         style.plain_decades(axes.xaxis)
@@ -49,19 +49,19 @@ def draw_errors(figure: SubFigure, rungs: tuple[Rung, ...]) -> None:
         _name_lines(axes, shown, end)
 
 
-def recommendation(rungs: tuple[Rung, ...], reason: str) -> str:
+def recommendation(levels: tuple[LevelMeasurements, ...], reason: str) -> str:
     """Returns a text on the recommended level, with the reason for it and the errors of all groups.
 
     The text is empty if the level was not measured.
     """
-    best = next((rung for rung in rungs if rung.is_recommended), None)
+    best = next((level for level in levels if level.is_recommended), None)
     if best is None:
         return ""
-    end = EXTRAPOLATION * max(rung.pictures[-1].seconds for rung in rungs)
+    end = EXTRAPOLATION * max(level.pictures[-1].seconds for level in levels)
     least: dict[str, float] = {}
-    for rung in rungs:
-        if rung is not best:
-            least[rung.group] = min(least.get(rung.group, np.inf), rung.error_after(end))
+    for level in levels:
+        if level is not best:
+            least[level.group] = min(least.get(level.group, np.inf), level.error_after(end))
     others = ", ".join(f"{error:.2g} ({group})" for group, error in least.items())
     return (
         f"Recommended: {best.name}. {reason}.\n"
@@ -69,35 +69,35 @@ def recommendation(rungs: tuple[Rung, ...], reason: str) -> str:
     )
 
 
-def _colour(rung: Rung, number: int) -> str:
-    return style.text_colour() if rung.is_recommended else style.field_colour(number)
+def _colour(level: LevelMeasurements, number: int) -> str:
+    return style.text_colour() if level.is_recommended else style.field_colour(number)
 
 
-def _draw_line(axes: Axes, rung: Rung, colour: str, end: float) -> None:
-    seconds, errors = zip(*((picture.seconds, picture.rmse) for picture in rung.pictures), strict=True)
-    width = 2.5 if rung.is_recommended else 1.2
+def _draw_line(axes: Axes, level: LevelMeasurements, colour: str, end: float) -> None:
+    seconds, errors = zip(*((picture.seconds, picture.rmse) for picture in level.pictures), strict=True)
+    width = 2.5 if level.is_recommended else 1.2
     axes.plot(seconds, errors, marker="o", color=colour, markersize=2 + width, linewidth=width)
     later = np.geomspace(seconds[-1], end, 50)
-    axes.plot(later, [rung.error_after(time) for time in later], ":", color=colour, linewidth=width)
+    axes.plot(later, [level.error_after(time) for time in later], ":", color=colour, linewidth=width)
 
 
-def _name_lines(axes: Axes, rungs: list[Rung], end: float) -> None:
+def _name_lines(axes: Axes, levels: list[LevelMeasurements], end: float) -> None:
     """Writes the names to the right of the axes, at the height of the lines' ends, without overlap."""
     low, high = axes.get_ylim()
-    heights = np.log([rung.error_after(end) / low for rung in rungs]) / np.log(high / low)
+    heights = np.log([level.error_after(end) / low for level in levels]) / np.log(high / low)
     order = np.argsort(heights)
     positions = _spread(heights[order], 0.13)
     for position, number in zip(positions, order, strict=True):
-        rung = rungs[number]
+        level = levels[number]
         axes.annotate(
-            textwrap.fill(rung.name, 20),
+            textwrap.fill(level.name, 20),
             (1, heights[number]),
             (1.03, position),
             xycoords="axes fraction",
             textcoords="axes fraction",
             va="center",
-            color=_colour(rung, int(number)),
-            weight="bold" if rung.is_recommended else "normal",
+            color=_colour(level, int(number)),
+            weight="bold" if level.is_recommended else "normal",
             fontsize=7,
             linespacing=0.9,
             arrowprops={"arrowstyle": "-", "linewidth": 0.4, "color": style.GREY, "relpos": (0, 0.5), "shrinkB": 0},
@@ -115,9 +115,9 @@ def _spread(positions: Doubles, min_distance: float) -> Doubles:
     return moved
 
 
-def _draw_frontier(axes: Axes, rungs: tuple[Rung, ...]) -> None:
+def _draw_frontier(axes: Axes, levels: tuple[LevelMeasurements, ...]) -> None:
     """Draws the smallest error that any level has reached by each time."""
-    lines = [np.log([(p.seconds, p.rmse) for p in rung.pictures]).T for rung in rungs]
+    lines = [np.log([(p.seconds, p.rmse) for p in level.pictures]).T for level in levels]
     times = np.linspace(min(line[0, 0] for line in lines), max(line[0, -1] for line in lines), 400)
     errors = [np.interp(times, line[0], line[1], left=np.inf) for line in lines]
     best = np.minimum.accumulate(np.min(errors, axis=0))

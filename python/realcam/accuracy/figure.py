@@ -24,7 +24,7 @@ MAX_CODES = 32.0  # difference that is white in the thumbnails
 def save_figure(cost: Measurements, path: str | os.PathLike[str]) -> None:
     """Writes .svg, or .html with tables; the file is self-contained. Raises ImageFileError."""
     target = files.check_target(path, (".svg", ".html"))
-    if not cost.rungs:
+    if not cost.levels:
         raise ImageFileError(f"{target}: there is nothing to draw: no level was measured")
     figure = _drawing(cost)
     if target.suffix.lower() == ".svg":
@@ -39,7 +39,7 @@ def _drawing(cost: Measurements) -> Figure:
         (
             f"Levels of simulation: {size}, against {cost.reference}",
             "It leaves out only what this shot does not show",
-            cost.rungs,
+            cost.levels,
             5.0,
         ),
         (
@@ -54,16 +54,16 @@ def _drawing(cost: Measurements) -> Figure:
     with style.themed("light", 8.0):
         figure = Figure(figsize=(11, sum(heights)), layout="constrained")
         *above, below = np.asarray(figure.subfigures(len(heights), 1, height_ratios=heights)).ravel()
-        for cell, (title, reason, rungs, _) in zip(above, plots, strict=True):
-            draw_errors(cell, rungs)
-            cell.suptitle("\n".join(filter(None, (title, recommendation(rungs, reason)))), fontsize=9)
-        columns = (len(cost.rungs) + 1) // 2
+        for cell, (title, reason, levels, _) in zip(above, plots, strict=True):
+            draw_errors(cell, levels)
+            cell.suptitle("\n".join(filter(None, (title, recommendation(levels, reason)))), fontsize=9)
+        columns = (len(cost.levels) + 1) // 2
         thumbnails = np.atleast_1d(below.subplots(2, columns)).ravel()
         for cell in thumbnails:
             cell.set_axis_off()
-        for cell, rung in zip(thumbnails, cost.rungs, strict=False):
-            cell.imshow(rung.difference, cmap="inferno", vmin=0, vmax=MAX_CODES, interpolation="nearest")
-            cell.set_title(textwrap.fill(rung.name, 24), fontsize=6)
+        for cell, level in zip(thumbnails, cost.levels, strict=False):
+            cell.imshow(level.difference, cmap="inferno", vmin=0, vmax=MAX_CODES, interpolation="nearest")
+            cell.set_title(textwrap.fill(level.name, 24), fontsize=6)
         below.suptitle(
             f"Difference of the best picture of each level to the reference; white: {MAX_CODES:g} codes", fontsize=9
         )

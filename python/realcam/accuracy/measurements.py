@@ -25,7 +25,7 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Rung:
+class LevelMeasurements:
     """Measurements of one level of simulation.
 
     name, model, effects, group, is_recommended: see Level. pictures: in the order of their samples. bias_codes: RMS
@@ -82,17 +82,17 @@ class Rung:
 class Measurements:
     """Measurements of the levels of simulation, and of the sampling strategies of the full lens.
 
-    rungs: levels, against a reference with all effects; samplings: sampling strategies of the full lens without
-    effects, against their own reference. missing: names of levels not measured because of an interruption; impossible:
-    names of levels that cannot render this lens, or not on this device.
+    levels: levels of simulation, against a reference with all effects; samplings: sampling strategies of the full lens
+    without effects, against their own reference. missing: names of levels not measured because of an interruption;
+    impossible: names of levels that cannot render this lens, or not on this device.
     """
 
     device: str
     size: tuple[int, int]
     reference: str
     reference_noise_codes: float
-    rungs: tuple[Rung, ...]
-    samplings: tuple[Rung, ...]
+    levels: tuple[LevelMeasurements, ...]
+    samplings: tuple[LevelMeasurements, ...]
     missing: tuple[str, ...]
     impossible: tuple[str, ...]
     reference_codes: Codes = field(repr=False, compare=False)

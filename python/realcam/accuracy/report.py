@@ -5,46 +5,46 @@ from __future__ import annotations
 import math
 
 from ..number_text import number_text, percent_text
-from .measurements import Measurements, Rung
+from .measurements import LevelMeasurements, Measurements
 
 
-def goals_of(rungs: tuple[Rung, ...]) -> list[float]:
+def goals_of(levels: tuple[LevelMeasurements, ...]) -> list[float]:
     """Returns the target errors of the table's time columns, in 8-bit codes.
 
     They are 4, 2 and 1 times the smallest error that a level has with its most samples.
     """
-    if not rungs:
+    if not levels:
         return []
-    best = min(rung.pictures[-1].rmse for rung in rungs)
+    best = min(level.pictures[-1].rmse for level in levels)
     return [4 * best, 2 * best, best]
 
 
 def tables_of(cost: Measurements) -> list[tuple[str, list[str], list[list[str]]]]:
     """Returns the title, the column heads and the rows of cells of each table."""
     return [
-        (title, *_rows_of(rungs))
-        for title, rungs in (("level", cost.rungs), ("every surface, sampled over", cost.samplings))
-        if rungs
+        (title, *_rows_of(levels))
+        for title, levels in (("level", cost.levels), ("every surface, sampled over", cost.samplings))
+        if levels
     ]
 
 
-def _rows_of(rungs: tuple[Rung, ...]) -> tuple[list[str], list[list[str]]]:
-    goals = goals_of(rungs)
+def _rows_of(levels: tuple[LevelMeasurements, ...]) -> tuple[list[str], list[list[str]]]:
+    goals = goals_of(levels)
     heads = ["M samples/s", "lens", "scene", "rest", "bias", "noise", "FLIP"]
     heads += [f"s to {number_text(goal, 2)} codes" for goal in goals]
-    return heads, [_cells(rung, goals) for rung in rungs]
+    return heads, [_cells(level, goals) for level in levels]
 
 
-def _cells(rung: Rung, goals: list[float]) -> list[str]:
-    last = rung.pictures[-1]
-    shares = [percent_text(share) for share in (rung.lens_share, rung.scene_share, rung.other_share)]
-    seconds = [rung.seconds_to(goal) for goal in goals]
+def _cells(level: LevelMeasurements, goals: list[float]) -> list[str]:
+    last = level.pictures[-1]
+    shares = [percent_text(share) for share in (level.lens_share, level.scene_share, level.other_share)]
+    seconds = [level.seconds_to(goal) for goal in goals]
     return [
-        rung.name,
-        number_text(1e-6 * rung.samples_per_second, 3),
+        level.name,
+        number_text(1e-6 * level.samples_per_second, 3),
         *shares,
-        number_text(rung.bias_codes, 2),
-        number_text(rung.noise_codes, 2),
+        number_text(level.bias_codes, 2),
+        number_text(level.noise_codes, 2),
         "" if last.flip is None else f"{last.flip:.4f}",
         *("never" if math.isinf(value) else number_text(value, 2) for value in seconds),
     ]

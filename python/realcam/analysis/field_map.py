@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from .._core import InputError, Lens, RayStatus
-from ..fields import STOP_PROBES
+from ..fields import STOP_PROBES, area_weighted_spot
 from ..short_text import ShortText
 from . import style
 from .fields import Bundles, Doubles, bundles_of, default_frequencies_per_mm
@@ -46,9 +46,7 @@ class _Quantity:
 
 
 def _spot(source: Bundles, point: Point, nm: float, _: float) -> float:
-    spot = source.lens.spot(
-        film_mm=point, wavelength_nm=nm, object_distance_m=source.object_distance_m, pattern="rings", samples=8
-    )
+    spot = area_weighted_spot(source.lens, film_mm=point, wavelength_nm=nm, object_distance_m=source.object_distance_m)
     return 1e3 * spot.rms_radius_mm
 
 

@@ -96,7 +96,7 @@ class ReportPlots:
         figure = matplotlib.figure.Figure(figsize=PAGE_IN)
         grid = figure.add_gridspec(4, 3, top=0.9, bottom=0.05, hspace=0.42, wspace=0.34, **SIDE)
         fans = ray_fan(self.lens, samples=45, **self.at_fields)
-        spots = spot_diagram(self.lens, rings=7, **self.at_fields)
+        spots = spot_diagram(self.lens, **self.at_fields)
         for f in range(3):
             plot_ray_fan(fans, figure.add_subplot(grid[0, f]), f)
             plot_ray_fan(fans, figure.add_subplot(grid[1, f]), f, sagittal=True)
@@ -221,9 +221,7 @@ class FilmPlots(ReportPlots):
         figure = matplotlib.figure.Figure(figsize=PAGE_IN)
         grid = figure.add_gridspec(4, 3, top=0.91, bottom=0.05, hspace=0.45, wspace=0.5, left=0.085, right=0.95)
         for k, point in enumerate(self.points):
-            spot = partial(
-                spot_diagram, self.lens, wavelengths_nm=self.colours, film_mm=[point], rings=7, bundles=self.source
-            )
+            spot = partial(spot_diagram, self.lens, wavelengths_nm=self.colours, film_mm=[point], bundles=self.source)
             wavefront = partial(
                 wavefront_map, self.lens, film_mm=point, samples=64, object_distance_m=self.source.object_distance_m
             )

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens
-from ..fields import FieldPosition, field_arguments, field_text
+from ..fields import FieldPosition, area_weighted_spot, field_arguments, field_text
 from ..short_text import ShortText
 from . import style
 from .exit_rays import exit_rays, hexapolar
@@ -23,8 +23,9 @@ class SpotDiagram(ShortText):
     defocus_mm: (D,), distances of the planes behind the film.
     points_mm: (D, F, W, N, 2), x and y relative to the chief ray at the design wavelength on that plane; nan for rays
       that do not pass.
-    centroid_mm: (D, F, 2), of all wavelengths.
-    rms_radius_mm: (D, F), of all wavelengths, about their centroid.
+    centroid_mm: (D, F, 2), of all wavelengths, relative to the chief ray as points_mm are.
+    rms_radius_mm: (D, F), of all wavelengths with equal weights, about their centroid: of the light over the whole
+      stop, not of the points, among which those at the edge of the stop count too much.
     airy_radii_mm: (F, 2), along x and y: 1.22 times the design wavelength times the field's working f-number in that
       direction.
     film_mm: (F, 2), fields specified as film points; then fields_deg is nan.
@@ -72,6 +73,7 @@ def spot_diagram(
     planes = numbers_of(defocus_mm, "defocus_mm")
     pupil_points = hexapolar(rings)
     points = np.empty((len(planes), len(fields), len(colours), len(pupil_points), 2))
+    centroid, rms = np.empty((len(planes), len(fields), 2)), np.empty((len(planes), len(fields)))
     airy = np.empty((len(fields), 2))
     for f, field in enumerate(fields):
         chief_point, chief_slopes = _chief_line(source, field)
@@ -81,16 +83,35 @@ def spot_diagram(
                 raise InputError(f'none of {len(pupil_points)} rays at {field_text(field)} passes lens "{lens.name}"')
             for d, plane in enumerate(planes):
                 points[d, f, w] = rays.at(float(plane)) - (chief_point + plane * chief_slopes)
+        for d, plane in enumerate(planes):
+            centroid[d, f], rms[d, f] = _centroid_and_rms(source, field, colours, float(plane))
+            centroid[d, f] -= chief_point + plane * chief_slopes
         bundle = source.at(field, lens.wavelength_nm)
         apertures = np.ptp(bundle.edge_slopes.reshape(-1, 2), axis=0)  # 1 / f-number along x and y
         airy[f] = 1.22e-6 * bundle.wavelength_nm / bundle.index / apertures
-    all_colours = points.reshape(len(planes), len(fields), -1, 2)
-    centroid = np.nanmean(all_colours, axis=2)
-    square = ((all_colours - centroid[:, :, None]) ** 2).sum(axis=-1)
-    rms = np.sqrt(np.nanmean(square, axis=2))
     return SpotDiagram(
         angles, colours, planes, points, centroid, rms, airy, None if film_mm is None else np.array(fields)
     )
+
+
+def _centroid_and_rms(
+    source: Bundles, field: FieldPosition, colours: Doubles, defocus_mm: float
+) -> tuple[Doubles, float]:
+    """Centroid, (2,), mm on the film, and RMS radius about it, mm, of all wavelengths with equal weights."""
+    spots = [
+        area_weighted_spot(
+            source.lens,
+            **field_arguments(field),
+            wavelength_nm=float(colour),
+            object_distance_m=source.object_distance_m,
+            film_distance_mm=source.lens.film_distance_mm + defocus_mm,
+        )
+        for colour in colours
+    ]
+    centroids = np.array([spot.centroid_mm for spot in spots])
+    centroid = centroids.mean(axis=0)
+    squares = np.array([spot.rms_radius_mm for spot in spots]) ** 2 + ((centroids - centroid) ** 2).sum(axis=1)
+    return centroid, float(np.sqrt(squares.mean()))
 
 
 def _chief_line(source: Bundles, field: FieldPosition) -> tuple[Doubles, Doubles]:

@@ -83,7 +83,7 @@ def summary_rows(summary: LensSummary) -> Rows:
         where = f"{number_text(angle_deg, 3)}°" if share is None else f"{share:g}"
         rows.append(
             (
-                f"RMS spot at {where}",
+                f"RMS spot at {where}, {summary.lens.wavelength_nm:.0f} nm",
                 f"{number_text(figures.rms_spot_radius_um, 3)} um ({number_text(figures.field.film_height_mm, 3)} mm)",
             )
         )

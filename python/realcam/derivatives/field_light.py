@@ -70,8 +70,10 @@ def field_light(
     """Traces the bundle of a field point with derivatives by the variables.
 
     film_mm: the field as a film point, in place of field_deg. samples, pattern: as for Lens.spot.
-    Raises InputError if no light passes, or if the chief ray is blocked.
+    Raises InputError if no light passes, if the chief ray is blocked, or if the film is curved.
     """
+    if math.isfinite(lens.film_radius_of_curvature_mm):
+        raise InputError(f'derivatives of a spot or wavefront need a flat film; that of lens "{lens.name}" is curved')
     count = len(variables)
     keywords: dict[str, Any] = {
         "object_distance_m": object_distance_m,

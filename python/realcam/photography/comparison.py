@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Lens
-from ..fields import Field, fields_at
+from ..fields import Field, area_weighted_spot, fields_at
 from ..section.cut import Cut
 from ..section.outlines import elements_of
 from ..short_text import ShortText
@@ -54,7 +54,7 @@ def lens_summary(
     frequencies = tuple(mtf_frequencies_per_mm)
     field_figures = []
     for field in fields_at(lens, shares):
-        spot = lens.spot(field.angle_deg, pattern="rings", samples=12)
+        spot = area_weighted_spot(lens, field_deg=field.angle_deg)
         tangential = sagittal = None
         if frequencies:
             _, tangential, sagittal = lens.psf(field.angle_deg, centre="centroid").mtf(np.array(frequencies))

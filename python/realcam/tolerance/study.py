@@ -204,7 +204,7 @@ def tolerance_study(
     progress: called with the fraction done; the study ends if it returns False. An interrupt after the first copies
     also ends it: the study then holds the copies evaluated so far, and is_whole is False.
     Raises InputError for a tolerance or compensator that does not apply to this lens, and for a nominal lens without
-    rotational symmetry.
+    rotational symmetry or with a curved film.
     """
     drawing = Tolerances.grade(tolerances) if isinstance(tolerances, str) else tolerances
     if not isinstance(drawing, Tolerances):
@@ -218,7 +218,9 @@ def tolerance_study(
     if not 2 <= rings <= 100:
         raise InputError(f"rings is {rings!r:.40}; expected 2 to 100")
     if not lens.is_rotational:
-        raise InputError(f'tolerances need a rotationally symmetric lens with a flat film; lens "{lens.name}" is not')
+        raise InputError(f'tolerances need a rotationally symmetric lens; lens "{lens.name}" is not')
+    if math.isfinite(lens.film_radius_of_curvature_mm):
+        raise InputError(f'tolerances need a flat film; that of lens "{lens.name}" is curved')
     items = drawing.of(lens)
     from ..analysis.fields import default_frequencies_per_mm, numbers_of, wavelengths_of  # brings matplotlib
 

@@ -24,6 +24,6 @@ def measured_levels(scene: Scene, camera: Camera, device: str) -> tuple[list[dic
         return [], str(error)
     pixels = math.prod(camera.film.resolution) / math.prod(cost.size)
     levels = [
-        {"name": level.name, "points": [[pixels * p.seconds, p.rmse] for p in level.pictures]} for level in cost.rungs
+        {"name": level.name, "points": [[pixels * p.seconds, p.rmse] for p in level.pictures]} for level in cost.levels
     ]
     return levels, f"against a reference with noise of {cost.reference_noise_codes:.2g} grey levels"

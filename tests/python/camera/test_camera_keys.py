@@ -123,7 +123,7 @@ def test_a_cut_to_another_lens() -> None:
 
     fixed = gauss.first_order().effective_focal_length_mm
     assert shot.camera_at(0.999).lens == camera.lens
-    for time_s, *wanted in (
+    for time_s, *expected in (
         (1, gauss.name, 4, 5.6, fixed),  # with the first focus that its keys have
         (2.9, gauss.name, 4, 5.6, fixed),
         (3, zoom.name, 6, 4, 100),
@@ -131,7 +131,7 @@ def test_a_cut_to_another_lens() -> None:
         (4.9, zoom.name, 6, 16, 144),
         (5, gauss.name, 6, 16, fixed),
     ):
-        assert rings(time_s) == (wanted[0], *(pytest.approx(value, rel=1e-6) for value in wanted[1:])), time_s
+        assert rings(time_s) == (expected[0], *(pytest.approx(value, rel=1e-6) for value in expected[1:])), time_s
     # A dial of the camera goes on over all cuts.
     assert [shot.camera_at(t).iso for t in (2, 3, 4)] == pytest.approx([200, 400, 800], rel=1e-12)
     assert pickle.loads(pickle.dumps(keys)) == keys
@@ -183,7 +183,7 @@ def test_blades_and_film_have_keys() -> None:
 
 
 @pytest.mark.parametrize(
-    ("make", "wanted"),
+    ("make", "expected"),
     [
         (lambda: Key(0), "a key of the camera has no value"),
         (lambda: Key(0, focus_m=0), "the focus distance must be a positive number of metres, or inf"),
@@ -213,8 +213,8 @@ def test_blades_and_film_have_keys() -> None:
         (lambda: shot_of(iso_follows_s=-1), "iso_follows_s must be a number of seconds"),
     ],
 )
-def test_keys_that_cannot_be_are_refused(make: Callable[[], object], wanted: str) -> None:
-    with pytest.raises(rc.InputError, match=wanted):
+def test_keys_that_cannot_be_are_refused(make: Callable[[], object], expected: str) -> None:
+    with pytest.raises(rc.InputError, match=expected):
         make()
 
 
@@ -312,7 +312,7 @@ def test_an_f_number_of_the_file_is_that_of_all_focal_lengths(folder: Path) -> N
 
 
 @pytest.mark.parametrize(
-    ("text", "line", "wanted"),
+    ("text", "line", "expected"),
     [
         ("[[key]]\ntime_s = 1\niso = 100\n[[key]]\ntime_s = 1\niso = 200\n", 12, "the times must rise"),
         ("[[key]]\ntime_s = 1\nfocus = 2\n", 10, 'unknown key "focus" (did you mean "focus_m"?)'),
@@ -338,10 +338,10 @@ def test_an_f_number_of_the_file_is_that_of_all_focal_lengths(folder: Path) -> N
         ("[shake]\nseed = 1\n", 8, '[shake] needs a "file", "rms_deg" or "rms_mm"'),
     ],
 )  # fmt: skip
-def test_mistakes_are_named_with_file_and_line(folder: Path, text: str, line: int, wanted: str) -> None:
+def test_mistakes_are_named_with_file_and_line(folder: Path, text: str, line: int, expected: str) -> None:
     (folder / "a.toml").write_text(FILE + text)
     with pytest.raises(rc.InputError) as refusal:
         rc.Shot.load("a.toml", device="cpu")
     assert str(refusal.value).startswith(f"a.toml:{line}: ")
-    assert wanted in str(refusal.value)
+    assert expected in str(refusal.value)
     assert "\n" not in str(refusal.value)

@@ -26,8 +26,8 @@ def lamp(distance_m: float) -> rc.Scene:
 
 
 def photograph(scene: rc.Scene, seen_by: rc.Camera, **changes: Any) -> rc.Image:
-    wanted = {"spp": 64, "effects": (), "layers": HALVES, "max_bounces": 0, "device": "cpu"}
-    return rc.render(scene, seen_by, **(wanted | changes))
+    expected = {"spp": 64, "effects": (), "layers": HALVES, "max_bounces": 0, "device": "cpu"}
+    return rc.render(scene, seen_by, **(expected | changes))
 
 
 def column_of(light: np.ndarray) -> float:
@@ -64,12 +64,12 @@ def disparity_of_rays_mm(lens: rc.Lens, distance_m: float) -> float:
 @pytest.mark.parametrize("distance_m", [0.7, 2.5])
 def test_disparity_over_defocus_is_that_of_ray_centroids(distance_m: float, device: str) -> None:
     seen_by = camera()
-    wanted = disparity_of_rays_mm(seen_by.lens, distance_m)
+    expected = disparity_of_rays_mm(seen_by.lens, distance_m)
     # For an object beyond the focus distance, the image in the layer dual_pixel_right lies further to the right.
-    assert (wanted > 0) == (distance_m > FOCUS_M)
+    assert (expected > 0) == (distance_m > FOCUS_M)
     found = disparity_mm(photograph(lamp(distance_m), seen_by, spp=256, device=device))
     # 1e5 samples, of an image some tenths of a millimetre wide, leave 1e-3 mm or less of 0.2 mm.
-    assert found == pytest.approx(wanted, rel=0.02)
+    assert found == pytest.approx(expected, rel=0.02)
 
 
 @pytest.mark.parametrize("model", ["thin", "thick", "mapped", "polynomial", "full_double"])

@@ -80,12 +80,12 @@ def test_relative_illumination_equals_the_integral_summed_by_force(name: str) ->
     axis = yardsticks.brute_force_irradiance(lens, 0.0, 180)
     rendered_axis, lit_mm = axial_exposure(lens), illuminated_radius(lens)
     for share in (0.35, 0.65, 0.9):
-        wanted = share * lit_mm
-        ring = np.abs(middle - wanted) < 0.6 * pitch
+        required = share * lit_mm
+        ring = np.abs(middle - required) < 0.6 * pitch
         # Over the width of the ring, and of its pixels, the irradiance is a parabola through three sums.
-        nodes = wanted + 1.2 * pitch * np.array([-1, 0, 1])
+        nodes = required + 1.2 * pitch * np.array([-1, 0, 1])
         sums = [yardsticks.brute_force_irradiance(lens, r, 180) for r in nodes]
-        expected = np.polyval(np.polyfit(nodes - wanted, sums, 2), radius - wanted).mean(axis=(1, 3))[ring].mean()
+        expected = np.polyval(np.polyfit(nodes - required, sums, 2), radius - required).mean(axis=(1, 3))[ring].mean()
         # At least 100 pixels of 64 samples lie in a ring. For the least that may pass, 60% of the samples at
         # the edge of a fisheye, one standard deviation is sqrt(0.67 / 6400) = 1% of independent samples;
         # these are stratified, and elsewhere more pass. The sums are good to 180^-1.5 = 0.04%.

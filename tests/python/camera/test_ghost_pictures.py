@@ -56,9 +56,9 @@ def paraxial_film_height(lens: rc.Lens, height: float, slope: float) -> float:
     negative index while the ray travels backwards."""
     n = 1.6
     front, back = (surface.curvature_per_mm for surface in lens.surfaces[1:])
-    way = [(front, 1, n, 6.0), (back, n, -n, -6.0), (front, -n, n, 6.0), (back, n, 1, lens.film_distance_mm)]
+    direction = [(front, 1, n, 6.0), (back, n, -n, -6.0), (front, -n, n, 6.0), (back, n, 1, lens.film_distance_mm)]
     y, u = height, slope
-    for curvature, before, behind, distance in way:
+    for curvature, before, behind, distance in direction:
         u = (before * u - y * curvature * (behind - before)) / behind
         y += distance * u
     return y
@@ -112,17 +112,19 @@ class SequentialTrace:
         self.surfaces.append((self.film_z, np.eye(3), 0.0, np.ones(3), index, index, film_radius))
         self.refracting = [i for i, surface in enumerate(lens.surfaces) if surface.type == "refracting"]
 
-    def way(self, first: int, second: int) -> list[tuple[int, int, bool]]:
+    def path_of(self, first: int, second: int) -> list[tuple[int, int, bool]]:
         """(surface, direction along z, whether it is reflected)."""
         there = [(i, 1, i == first) for i in range(first + 1)]
         back = [(i, -1, i == second) for i in range(first - 1, second - 1, -1)]
         return there + back + [(i, 1, False) for i in range(second + 1, self.film)]
 
-    def to_film(self, o: np.ndarray, d: np.ndarray, way: list[tuple[int, int, bool]]) -> tuple[np.ndarray, np.ndarray]:
+    def to_film(
+        self, o: np.ndarray, d: np.ndarray, direction: list[tuple[int, int, bool]]
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Places on the film and shares of the power; 0 where a ray is lost."""
         s = p = np.ones(len(o))
         with np.errstate(all="ignore"):
-            for surface, sign, reflected in way:
+            for surface, sign, reflected in direction:
                 z, axes, c, curved, in_front, beyond, rim = self.surfaces[surface]
                 # |o + t d - C|^2 = R^2 in curvatures: A t^2 - 2 G t + F = 0.
                 local, along = (o - [0, 0, z]) @ axes.T, d @ axes.T
@@ -160,7 +162,7 @@ class SequentialTrace:
         edge = (np.arange(grid) + 0.5) / grid * 2 * reach - reach
         x, y = (a.ravel() for a in np.meshgrid(edge, edge[grid // 2 :]))
         start = np.stack([x, y, np.zeros(len(x))], axis=1) - 30 * d
-        place, share = self.to_film(start, np.broadcast_to(d, start.shape), self.way(*pair))
+        place, share = self.to_film(start, np.broadcast_to(d, start.shape), self.path_of(*pair))
         inside = (np.abs(place) <= film_mm / 2).all(axis=1)
         if disc:
             inside = np.hypot(place[:, 0], place[:, 1]) <= film_mm / 2

@@ -38,7 +38,7 @@ def on_film(
     edge = ((np.arange(grid) + 0.5) / grid * 2 - 1) * trace.stop_mm
     x, y = (a.ravel() for a in np.meshgrid(edge, edge))
     start = np.stack([x, y, np.zeros(grid * grid)], axis=1)[np.hypot(x, y) <= trace.stop_mm]
-    place, share = trace.to_film(start, np.broadcast_to(d, start.shape), trace.way(*pair))
+    place, share = trace.to_film(start, np.broadcast_to(d, start.shape), trace.path_of(*pair))
     bins = np.linspace(-12, 12, 25)
     # The picture is turned.
     light, _, _ = np.histogram2d(place[:, 1], -place[:, 0], bins=(bins, bins), weights=share)

@@ -84,13 +84,13 @@ def test_a_session_begins_anew_where_motion_is_left_out() -> None:
 
 
 @pytest.mark.parametrize(
-    ("effects", "wanted"),
+    ("effects", "expected"),
     [
         (["motion"], 'unknown effect "motion"; expected some of auto, .* -motion_blur, -rolling_shutter'),
         (["--motion_blur"], 'unknown effect "--motion_blur"'),
         (["dispersion", "-dispersion"], "dispersion is both named and left out"),
     ],
 )
-def test_what_is_no_choice_of_effects_is_refused(effects: list[str], wanted: str) -> None:
-    with pytest.raises(rc.InputError, match=wanted):
+def test_what_is_no_choice_of_effects_is_refused(effects: list[str], expected: str) -> None:
+    with pytest.raises(rc.InputError, match=expected):
         rc.render(passing(), camera(), spp=1, device="cpu", effects=effects)

@@ -66,9 +66,11 @@ def test_a_streak_is_as_long_as_its_way(device: str) -> None:
     cam = camera()
     pixel = metres_per_pixel(cam, 2.0)
     z = pupil_plane(cam, 2.0)
-    half, way = 10 * pixel, 16 * pixel
+    half, ray_direction = 10 * pixel, 16 * pixel
     sign = NOTHING.with_instance(lit_area(half), name="sign")
-    scene = sign.moved("sign", [shifted(-way / 2, 0, z), shifted(way / 2, 0, z)], times_s=[0, SHUTTER])
+    scene = sign.moved(
+        "sign", [shifted(-ray_direction / 2, 0, z), shifted(ray_direction / 2, 0, z)], times_s=[0, SHUTTER]
+    )
     row = pixels_of(scene, cam, device)[28:36].mean(axis=0)
     row /= row[46:50].mean()
 
@@ -294,7 +296,7 @@ def test_motion_is_a_part_of_the_values() -> None:
 
 
 @pytest.mark.parametrize(
-    ("transforms", "times", "wanted"),
+    ("transforms", "times", "required"),
     [
         ([np.eye(4)], [0, 1], "as many transforms as times"),
         ([np.eye(4)] * 2, [1, 1], "the times must rise"),
@@ -303,8 +305,8 @@ def test_motion_is_a_part_of_the_values() -> None:
         ([np.eye(4), np.diag([1, 1, -1, 1])], [0, 1], "mirror"),
     ],
 )
-def test_what_is_no_motion_is_refused(transforms: list[np.ndarray], times: list[float], wanted: str) -> None:
-    with pytest.raises(rc.InputError, match=wanted):
+def test_what_is_no_motion_is_refused(transforms: list[np.ndarray], times: list[float], required: str) -> None:
+    with pytest.raises(rc.InputError, match=required):
         NOTHING.with_instance(BOX, name="box").moved("box", transforms, times_s=times)
 
 

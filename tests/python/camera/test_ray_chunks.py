@@ -23,9 +23,9 @@ def test_pieces_are_the_whole(model: str, max_rays: int, device: str) -> None:
     assert len(pieces) == -(-len(whole.weights) // max_rays)
     for name in NAMES:
         joined = np.concatenate([np.asarray(getattr(piece, name)) for piece in pieces])
-        wanted = np.asarray(getattr(whole, name))
-        assert joined.dtype == wanted.dtype
-        assert joined.tobytes() == wanted.tobytes(), name
+        expected = np.asarray(getattr(whole, name))
+        assert joined.dtype == expected.dtype
+        assert joined.tobytes() == expected.tobytes(), name
 
 
 def test_an_iterator_is_one() -> None:

@@ -61,9 +61,9 @@ def test_a_moving_camera_is_where_its_rays_times_say() -> None:
     a, b = still.generate_rays(spp=8), moving.generate_rays(spp=8)
     lit = a.weights > 0
     # It moves 3 m each second, along x.
-    way = (b.origins_m - a.origins_m)[lit]
-    np.testing.assert_allclose(way[:, 0], 3 * b.times_s[lit], atol=2e-6)
-    np.testing.assert_allclose(way[:, 1:], 0, atol=2e-6)
+    direction = (b.origins_m - a.origins_m)[lit]
+    np.testing.assert_allclose(direction[:, 0], 3 * b.times_s[lit], atol=2e-6)
+    np.testing.assert_allclose(direction[:, 1:], 0, atol=2e-6)
 
 
 @pytest.mark.parametrize("wrong", [(700, 400), (100, 400), (400, float("nan"))])

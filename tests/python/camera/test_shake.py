@@ -58,9 +58,9 @@ def test_a_curve_turns_and_shifts_the_camera_in_its_own_axes() -> None:
     shot = rc.Shot(scenes.scene_of(scenes.quad((0, 0, -3), 3)), camera, shake=rc.Shake(curve=curve))
     seen = shot.camera_at(1)
     np.testing.assert_allclose(seen.position, (1 - 0.3, 1 + 0.2, 1 + 0.1), atol=1e-6)
-    way = np.subtract(seen.look_at, seen.position)
+    direction = np.subtract(seen.look_at, seen.position)
     up = np.radians(3)
-    np.testing.assert_allclose(way, 2 * np.array([np.cos(up), np.sin(up), 0]), atol=1e-6)
+    np.testing.assert_allclose(direction, 2 * np.array([np.cos(up), np.sin(up), 0]), atol=1e-6)
     left = np.subtract(shot.camera_at(2).look_at, (1, 1, 1))
     turn = np.radians(4)
     np.testing.assert_allclose(left, 2 * np.array([np.cos(turn), 0, -np.sin(turn)]), atol=1e-6)
@@ -107,7 +107,7 @@ def test_a_curve_is_read_from_a_table(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "line", "wanted"),
+    ("text", "line", "expected"),
     [
         ("time_s,yaw\n0,1\n", 1, 'unknown column "yaw"'),
         ("x_deg\n1\n", 1, "the column time_s is missing"),
@@ -121,17 +121,17 @@ def test_a_curve_is_read_from_a_table(tmp_path: Path) -> None:
         ("time_s\n", None, "has no curve"),
     ],
 )
-def test_mistakes_in_a_table_are_named(tmp_path: Path, text: str, line: int | None, wanted: str) -> None:
+def test_mistakes_in_a_table_are_named(tmp_path: Path, text: str, line: int | None, expected: str) -> None:
     path = tmp_path / "walk.csv"
     path.write_text(text)
     with pytest.raises(rc.InputError) as refusal:
         rc.Shake.load(path)
     assert str(refusal.value).startswith(f"{path}:{line}: " if line else f"{path}: ")
-    assert wanted in str(refusal.value)
+    assert expected in str(refusal.value)
 
 
 @pytest.mark.parametrize(
-    ("words", "wanted"),
+    ("words", "expected"),
     [
         ({"rms_deg": -1}, "an angle from 0 to 9 degrees"),
         ({"rms_mm": float("nan")}, "a length from 0 to 1e6 mm"),
@@ -140,6 +140,6 @@ def test_mistakes_in_a_table_are_named(tmp_path: Path, text: str, line: int | No
         ({"curve": [(1, (0, 0, 0), (0, 0, 0))] * 2}, "key 1 of the shake: the times must rise"),
     ],
 )
-def test_shakes_that_are_none_are_refused(words: dict[str, object], wanted: str) -> None:
-    with pytest.raises(rc.InputError, match=wanted):
+def test_shakes_that_are_none_are_refused(words: dict[str, object], expected: str) -> None:
+    with pytest.raises(rc.InputError, match=expected):
         rc.Shake(**words)

@@ -146,7 +146,7 @@ def test_what_cannot_be_is_refused():
         lens.with_film_radius(-21)
     for moved, why in ((lens.tilted(2), "surface 1 is tilted"), (lens.with_film_radius(-50), "its film is curved")):
         for model, effects, what in (("polynomial", (), "model polynomial"), ("full", "diffraction", "diffraction")):
-            with pytest.raises(rc.InputError, match=f"{what} needs a centred lens of revolution.*{why}"):
+            with pytest.raises(rc.InputError, match=f"{what} needs a rotationally symmetric lens.*{why}"):
                 rc.render(sky(), Camera(moved, model=model), spp=1, effects=effects)
 
 

@@ -202,7 +202,7 @@ def asked_by_bash(typed: str) -> dict[str, str]:
 
 
 @pytest.mark.parametrize(
-    ("typed", "wanted"),
+    ("typed", "expected"),
     [
         ("realcam re", {"render"}),
         ("realcam lens info tessar", {"tessar-50mm"}),
@@ -215,12 +215,12 @@ def asked_by_bash(typed: str) -> dict[str, str]:
     ],
 )
 @pictures
-def test_a_shell_completes(typed: str, wanted: set[str], python: Said, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_shell_completes(typed: str, expected: set[str], python: Said, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in asked_by_bash(typed).items():
         monkeypatch.setenv(name, value)
     code, output, errors = python("")
     assert (code, errors) == (0, "")
-    assert set(output.split()) - {"cuda", "cuda:0", "cuda:1"} == wanted
+    assert set(output.split()) - {"cuda", "cuda:0", "cuda:1"} == expected
 
 
 @pictures
@@ -265,6 +265,7 @@ def test_bench_says_where_the_benchmarks_are(tmp_path: Path, python: Said, monke
         # The package has more commands.
         ("lens", "a command is missing; info, list are known (realcam lens --help lists the commands)"),
         ("render scene.glb -o a.png --spp 4 --spp 8", "--spp is given more than once (realcam render --help"),
+        ("render quad.obj -o a.png --spp= --seed 3", "is empty"),
         ("render scene.glb -o a.png --zzzzzzzzzzzzzz", "unknown option --zzzzzzzzzzzzzz (realcam render --help"),
     ],
 )
@@ -319,7 +320,7 @@ def test_without_a_number_of_samples_the_noise_and_the_time_decide(tmp_path: Pat
     aim = "realcam: samples are taken until the noise is {}; --noise-codes, --seconds or --spp change this\n"
     for scene in ("quad.obj", "shot.toml"):
         image, told = figures(scene)
-        assert (image["noise"]["wanted"], image["noise"]["unit"]) == (2, "codes")
+        assert (image["noise"]["expected"], image["noise"]["unit"]) == (2, "codes")
         assert image["noise"]["is_reached"]
         assert aim.format("2 codes of 255, for 60 s at most") in told
     # A noise goal alone has no time limit; a time limit alone keeps the default noise goal.
@@ -337,7 +338,7 @@ def test_without_a_number_of_samples_the_noise_and_the_time_decide(tmp_path: Pat
 def test_noise_and_time_that_are_out_of_reach_end_with_one_line(tmp_path: Path) -> None:
     """The picture is written, and a warning says how far it got."""
     reached, _ = render(tmp_path, "--spp", "auto", "--noise", "0.2", "--environment", "100")
-    assert reached["noise"] == {"wanted": 0.2, "unit": "share", "is_reached": True, "shortfall": ""}
+    assert reached["noise"] == {"expected": 0.2, "unit": "share", "is_reached": True, "shortfall": ""}
     for words in (["--noise-codes", 1e-9, "--max-spp", 32], ["--noise-codes", 1e-9, "--seconds", 1e-9]):
         figures, told = render(tmp_path, "--spp", "auto", *words)
         assert figures["noise"]["is_reached"] is False
@@ -354,12 +355,15 @@ def test_pictures_that_show_nothing_are_told(tmp_path: Path) -> None:
     metered, told = render(tmp_path, *light)
     assert "nearly all" not in told
     time_s = metered["exposure"]["exposure_time_s"]
-    for stops, word, wanted in ((-6, "black", "a higher --iso or a smaller --f-number"), (7, "white", "a lower --iso")):
+    for stops, word, expected in (
+        (-6, "black", "a higher --iso or a smaller --f-number"),
+        (7, "white", "a lower --iso"),
+    ):
         figures, told = render(tmp_path, *light, "--exposure-time", time_s * 2**stops)
         [warning] = figures["warnings"]
         assert f"realcam: warning: {warning}\n" in told
         assert f"nearly all {word}, {abs(stops)} stops {'below' if stops < 0 else 'above'} middle grey" in warning
-        assert wanted in warning
+        assert expected in warning
         numerator, _, denominator = re.search(r"auto or about ([\d.]+)(/([\d.]+))?", warning).groups()  # type: ignore[union-attr]
         advised = float(numerator) / float(denominator or 1)
         assert math.log2(advised / time_s) == pytest.approx(0, abs=0.2)

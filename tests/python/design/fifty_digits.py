@@ -96,7 +96,7 @@ def refracted(d: list[Any], normal: list[Any], mu: Any) -> list[Any]:
 
 
 def traced(faces: list[Face], stop: int, o: list[Any], d: list[Any]) -> tuple[list[Any], list[Any], list[Any], Any]:
-    """Place on the stop; point and direction on the last face, whose vertex is the origin then; optical path."""
+    """Point on the stop; point and direction on the last face, whose vertex is the origin then; optical path."""
     path, z, on_stop = mpf(0), mpf(0), []
     for number, face in enumerate(faces):
         vertex = [*face.decentre, z]

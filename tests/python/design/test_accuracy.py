@@ -36,7 +36,7 @@ def cost() -> AccuracyCost:
 
 
 def test_all_levels_are_there(cost: AccuracyCost) -> None:
-    assert [rung.name for rung in cost.rungs] == [
+    assert [level.name for level in cost.levels] == [
         "pinhole, gather filter",
         "pinhole, heat diffusion",
         "pinhole",
@@ -52,7 +52,7 @@ def test_all_levels_are_there(cost: AccuracyCost) -> None:
         "+ ghosts",
         "planned",
     ]
-    assert [rung.name for rung in cost.samplings] == [
+    assert [level.name for level in cost.samplings] == [
         "rear element, random",
         "rear element",
         "exit pupil",
@@ -64,51 +64,51 @@ def test_all_levels_are_there(cost: AccuracyCost) -> None:
     assert cost.size == (24, 16)
     assert not cost.missing
     assert not cost.impossible
-    for rung in (*cost.rungs, *cost.samplings):
-        assert [picture.spp for picture in rung.pictures] == [1, 4, 16]
-        assert all(picture.seconds > 0 for picture in rung.pictures)
-        assert rung.lens_share + rung.scene_share + rung.other_share == pytest.approx(1)
-        assert rung.difference.shape == (16, 24)
+    for level in (*cost.levels, *cost.samplings):
+        assert [picture.spp for picture in level.pictures] == [1, 4, 16]
+        assert all(picture.seconds > 0 for picture in level.pictures)
+        assert level.lens_share + level.scene_share + level.other_share == pytest.approx(1)
+        assert level.difference.shape == (16, 24)
 
 
 def test_what_a_level_leaves_out_is_bias_and_no_noise(cost: AccuracyCost) -> None:
-    rungs = {rung.name: rung for rung in cost.rungs}
+    levels = {level.name: level for level in cost.levels}
     # Everything sharp, and the board behind is to be out of focus.
-    assert rungs["pinhole"].bias_codes > 5
-    assert rungs["+ ghosts"].bias_codes < 2
-    assert rungs["full lens"].bias_codes < rungs["thin lens"].bias_codes
-    assert rungs["pinhole, gather filter"].bias_codes < rungs["pinhole"].bias_codes
-    assert rungs["pinhole, heat diffusion"].bias_codes < rungs["pinhole"].bias_codes
-    assert rungs["full lens"].bias_codes == pytest.approx(rungs["full lens, double precision"].bias_codes, abs=0.5)
+    assert levels["pinhole"].bias_codes > 5
+    assert levels["+ ghosts"].bias_codes < 2
+    assert levels["full lens"].bias_codes < levels["thin lens"].bias_codes
+    assert levels["pinhole, gather filter"].bias_codes < levels["pinhole"].bias_codes
+    assert levels["pinhole, heat diffusion"].bias_codes < levels["pinhole"].bias_codes
+    assert levels["full lens"].bias_codes == pytest.approx(levels["full lens, double precision"].bias_codes, abs=0.5)
 
 
 def test_stratified_samples_are_better_than_random_ones(cost: AccuracyCost) -> None:
-    samplings = {rung.name: rung for rung in cost.samplings}
+    samplings = {level.name: level for level in cost.samplings}
     assert samplings["fitted outline"].noise_codes < samplings["fitted outline, random"].noise_codes
     assert samplings["fitted outline, random"].noise_codes < samplings["rear element, random"].noise_codes
 
 
 def test_time_to_an_error(cost: AccuracyCost) -> None:
     pictures = (Measured(1, 1.0, 8.0, None), Measured(4, 4.0, 4.0, None), Measured(16, 16.0, 2.0, None))
-    rung = replace(cost.rungs[0], pictures=pictures, bias_codes=0.0)
-    assert rung.seconds_to(10) == 1
-    assert rung.seconds_to(4) == pytest.approx(4)
-    assert rung.seconds_to(math.sqrt(8)) == pytest.approx(8)  # between two pictures, on logarithmic scales
-    assert rung.seconds_to(1) == pytest.approx(64)  # noise falls with the square root of the time
-    assert replace(rung, bias_codes=1.5).seconds_to(1) == math.inf
+    level = replace(cost.levels[0], pictures=pictures, bias_codes=0.0)
+    assert level.seconds_to(10) == 1
+    assert level.seconds_to(4) == pytest.approx(4)
+    assert level.seconds_to(math.sqrt(8)) == pytest.approx(8)  # between two pictures, on logarithmic scales
+    assert level.seconds_to(1) == pytest.approx(64)  # noise falls with the square root of the time
+    assert replace(level, bias_codes=1.5).seconds_to(1) == math.inf
     # A bias of 1.2 leaves a noise of 1.6, which four times the time halves.
-    assert rung.error_after(64.0) == pytest.approx(1.0)
-    assert replace(rung, bias_codes=1.2).error_after(64.0) == pytest.approx(math.hypot(1.2, 0.8))
+    assert level.error_after(64.0) == pytest.approx(1.0)
+    assert replace(level, bias_codes=1.2).error_after(64.0) == pytest.approx(math.hypot(1.2, 0.8))
 
 
 def test_it_is_told_as_tables_and_json(cost: AccuracyCost) -> None:
     text = str(cost)
-    for rung in (*cost.rungs, *cost.samplings):
-        assert f"| {rung.name} " in text
+    for level in (*cost.levels, *cost.samplings):
+        assert f"| {level.name} " in text
     assert "24 x 16 pixels on CPU" in text
     told = json.loads(cost.json())
-    assert told["rungs"][0]["pictures"][0]["spp"] == 1
-    assert "difference" not in told["rungs"][0]
+    assert told["levels"][0]["pictures"][0]["spp"] == 1
+    assert "difference" not in told["levels"][0]
 
 
 @pytest.mark.slow
@@ -118,8 +118,8 @@ def test_the_figure_is_one_file(cost: AccuracyCost, tmp_path: Path) -> None:
     text = "".join(drawing.itertext())
     assert "seconds of samples" in text
     assert "polynomial lens" in text
-    for rung in (*cost.rungs, *cost.samplings):
-        assert (f"Recommended: {rung.name}." in text) == rung.is_recommended
+    for level in (*cost.levels, *cost.samplings):
+        assert (f"Recommended: {level.name}." in text) == level.is_recommended
     cost.figure(tmp_path / "a.html")
     page = (tmp_path / "a.html").read_text()
     assert "<svg" in page
@@ -140,7 +140,7 @@ def test_names_of_lines_keep_apart(places: list[float]) -> None:
     assert all(m == p for m, p in zip(moved, places, strict=True) if sum(abs(p - q) < 0.3 for q in places) == 1)
 
 
-def test_an_interrupted_ladder_keeps_what_is_done() -> None:
+def test_an_interrupted_measurement_keeps_what_is_done() -> None:
     calls = 0
 
     def interrupt(_: float) -> None:
@@ -152,7 +152,7 @@ def test_an_interrupted_ladder_keeps_what_is_done() -> None:
     cost = rc.accuracy_cost(
         scene(), camera(), device="cpu", size=12, max_spp=1, reference_spp=16, effects=(), progress=interrupt
     )
-    assert [rung.name for rung in cost.rungs] == ["pinhole, gather filter", "pinhole, heat diffusion", "pinhole"]
+    assert [level.name for level in cost.levels] == ["pinhole, gather filter", "pinhole, heat diffusion", "pinhole"]
     assert cost.missing[:2] == ("thin lens", "thin lens, distortion and vignetting")
     assert cost.missing[-1] == "fitted outline, lights traced"
     assert "Interrupted; not measured: thin lens, " in str(cost)
@@ -164,8 +164,8 @@ def test_what_an_ideal_lens_cannot_show_is_named() -> None:
     cost = rc.accuracy_cost(
         scene(), view, device="cpu", size=16, max_spp=1, reference_spp=16, effects=(), samplings=False
     )
-    assert "full lens" in {rung.name for rung in cost.rungs}
-    assert set(cost.impossible).isdisjoint(rung.name for rung in cost.rungs)
+    assert "full lens" in {level.name for level in cost.levels}
+    assert set(cost.impossible).isdisjoint(level.name for level in cost.levels)
     assert not cost.samplings
 
 

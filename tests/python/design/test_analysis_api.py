@@ -134,7 +134,7 @@ TELECENTRIC = rc.Lens(
 
 
 @pytest.mark.parametrize(
-    ("call", "wanted"),
+    ("call", "required"),
     [
         (lambda: LENS.wavefront(60.0), "no ray at a field angle of 60 deg reaches the middle of the stop"),
         (lambda: LENS.spot(30.0), "none of 127 rays at a field angle of 30 deg passes lens"),
@@ -158,9 +158,9 @@ TELECENTRIC = rc.Lens(
         (lambda: TELECENTRIC.seidel(3.0), "telecentric on the object's side"),
     ],
 )
-def test_mistakes_get_one_clear_error(call: object, wanted: str) -> None:
+def test_mistakes_get_one_clear_error(call: object, required: str) -> None:
     assert callable(call)
-    with pytest.raises(rc.InputError, match=wanted) as error:
+    with pytest.raises(rc.InputError, match=required) as error:
         call()
     assert "\n" not in str(error.value)
 

@@ -82,12 +82,12 @@ def test_an_outline_encloses_the_glass_between_its_faces(name: str) -> None:
             z2 + np.array([back.sag_mm(min(v, rims[1])) for v in y])
             - z1 - np.array([front.sag_mm(min(v, rims[0])) for v in y])
         )  # fmt: skip
-        wanted = 2 * np.trapezoid(thickness, y)
+        expected = 2 * np.trapezoid(thickness, y)
         area = 0.0
         for z, r in (polygon.T for polygon in element.polygons):
             area += 0.5 * abs(np.dot(z, np.roll(r, -1)) - np.dot(r, np.roll(z, -1)))
         # Chords of 40 pieces a half face, denser towards the rim: an arc of a right angle differs by (pi/80)^2 / 12.
-        assert area == pytest.approx(wanted, rel=1e-3)
+        assert area == pytest.approx(expected, rel=1e-3)
 
 
 def test_the_smaller_face_is_edged_flat() -> None:
@@ -159,11 +159,11 @@ def test_paths_are_those_of_traced_rays(name: str, rays_from: str) -> None:
 
 def test_bundles_come_from_infinity_or_from_the_plane_in_focus() -> None:
     for bundle in cross_section(GAUSS).bundles:
-        way = bundle.paths_mm[:, 1] - bundle.paths_mm[:, 0]
-        way /= np.linalg.norm(way, axis=1)[:, None]
+        direction = bundle.paths_mm[:, 1] - bundle.paths_mm[:, 0]
+        direction /= np.linalg.norm(direction, axis=1)[:, None]
         angle = math.radians(bundle.field.angle_deg)
-        assert np.allclose(way, (0, math.sin(angle), math.cos(angle)), rtol=0, atol=1e-12)
-        start = bundle.paths_mm[:, 0] @ way[0]
+        assert np.allclose(direction, (0, math.sin(angle), math.cos(angle)), rtol=0, atol=1e-12)
+        start = bundle.paths_mm[:, 0] @ direction[0]
         assert np.ptp(start) < 1e-9  # on one plane across the light
     near = GAUSS.focused(0.8)
     plane = -(1000 * near.focus_distance_m - near.film_position_mm)

@@ -121,11 +121,11 @@ def test_gradients_are_central_differences_in_fifty_digits(field_deg: float, obj
             rays = Truth(numbers | change, field_deg, object_mm, pupil, drawn)
             return {q: getattr(rays, q)() for q in quantities}
 
-        wanted = by_differences(truth, numbers, VARIABLES, mpf(10) ** -16)
+        expected = by_differences(truth, numbers, VARIABLES, mpf(10) ** -16)
         for q in quantities:
             # Rays are aimed within 2.5e-11 of the stop's radius.
             assert found[q].value == pytest.approx(float(getattr(drawn, q)()), rel=1e-9)
-            assert found[q].by == pytest.approx(np.array(wanted[q]), rel=1e-9), q
+            assert found[q].by == pytest.approx(np.array(expected[q]), rel=1e-9), q
 
 
 def test_first_order_is_that_of_a_thick_lens() -> None:
@@ -233,8 +233,8 @@ def test_a_function_of_rays_has_the_gradient_of_its_central_differences() -> Non
             return sum(mpf(w) * v for w, v in zip(weights, o + d, strict=True)) + mpf(of_path[ray]) * path
 
         step = mpf(10) ** -16
-        wanted = by_differences(lambda of: {"sum": function(0, of) + function(2, of)}, numbers, names, step)
-        assert found.by == pytest.approx(np.array(wanted["sum"]), rel=1e-9)
+        expected = by_differences(lambda of: {"sum": function(0, of) + function(2, of)}, numbers, names, step)
+        assert found.by == pytest.approx(np.array(expected["sum"]), rel=1e-9)
         for ray in (0, 2):
             for i, ours in enumerate([*found.by_origins[ray], *found.by_directions[ray]]):
                 slope = (function(ray, {}, i, step) - function(ray, {}, i, -step)) / (2 * step)
@@ -293,3 +293,9 @@ def test_what_makes_no_sense_is_said_in_one_line(call: Callable[[rc.Lens], Any],
     with pytest.raises(rc.InputError, match=message) as error:
         call(singlet())
     assert "\n" not in str(error.value)
+
+
+def test_a_curved_film_is_refused() -> None:
+    curved = rc.Lens.load("double-gauss-50mm").with_film_radius(-60)
+    with pytest.raises(rc.InputError, match=r"need a flat film.*is curved"):
+        curved.gradient("spot_mm", [rc.Variable.radius(0)], field_deg=15)

@@ -139,10 +139,10 @@ def test_gradients_are_central_differences_in_fifty_digits(object_m: float) -> N
             rays = Truth(numbers | change, chief, 1000 * object_m, pupil, drawn)
             return {q: getattr(rays, q)() for q in quantities}
 
-        wanted = by_differences(truth, numbers, VARIABLES, mpf(10) ** -14)
+        expected = by_differences(truth, numbers, VARIABLES, mpf(10) ** -14)
         for q in quantities:
             assert found[q].value == pytest.approx(float(getattr(drawn, q)()), rel=1e-9), q
-            assert found[q].by == pytest.approx(np.array(wanted[q]), rel=1e-9), q
+            assert found[q].by == pytest.approx(np.array(expected[q]), rel=1e-9), q
 
 
 def focal_length_and_f_number(of: dict[str, Any], near: rc.AimedRays) -> tuple[Any, Any]:
@@ -172,9 +172,9 @@ def focal_length_and_f_number(of: dict[str, Any], near: rc.AimedRays) -> tuple[A
     x = unit(cross([mpf(0), mpf(1), mpf(0)], behind))
     axes, power, pupil = (x, cross(behind, x)), mpmath.matrix(2, 2), mpmath.matrix(2, 2)
     for k in range(2):
-        stop_beside, _, way, _ = traced(faces, 2, *beside(k, h))
+        stop_beside, _, direction, _ = traced(faces, 2, *beside(k, h))
         for i in range(2):
-            power[i, k], pupil[i, k] = dot(axes[i], way) / h, (stop_beside[i] - stop[i]) / h
+            power[i, k], pupil[i, k] = dot(axes[i], direction) / h, (stop_beside[i] - stop[i]) / h
     length = 1 / mpmath.sqrt(abs(mpmath.det(power)))
     return length, length * mpmath.sqrt(abs(mpmath.det(pupil))) / (2 * STOP)
 
@@ -194,10 +194,10 @@ def test_first_order_is_a_central_difference_in_fifty_digits() -> None:
             return dict(zip(quantities, focal_length_and_f_number(numbers | change, near), strict=True))
 
         assert found[quantities[0]].value == pytest.approx(float(truth({})[quantities[0]]), rel=1e-10)
-        wanted = by_differences(truth, numbers, VARIABLES, mpf(10) ** -14)
+        expected = by_differences(truth, numbers, VARIABLES, mpf(10) ** -14)
     for q in quantities:
         # The second derivatives of rays are differences of first ones in double.
-        assert found[q].by == pytest.approx(np.array(wanted[q]), rel=1e-7, abs=1e-9 * found[q].value), q
+        assert found[q].by == pytest.approx(np.array(expected[q]), rel=1e-7, abs=1e-9 * found[q].value), q
 
 
 def test_the_first_order_of_a_lens_that_is_moved_before_its_film_is_asked_for_before() -> None:

@@ -44,11 +44,11 @@ def test_on_the_axis_it_is_convolution_by_the_point_spread_function(
     size = fine * (2 * reach + 1)
     psf = lens.psf(wavelength_nm=D_NM, size=size, pitch_um=pixel_um / fine)
     kernel = psf.values.reshape(2 * reach + 1, fine, 2 * reach + 1, fine).sum(axis=(1, 3))
-    wanted = np.stack([fftconvolve(picture[..., k], kernel / kernel.sum(), mode="same") for k in range(3)], axis=2)
+    expected = np.stack([fftconvolve(picture[..., k], kernel / kernel.sum(), mode="same") for k in range(3)], axis=2)
     inner = np.s_[reach:-reach, reach:-reach]
-    error = np.abs(encoded(seen.pixels / seen.illumination[..., None]) - encoded(wanted))[inner]
+    error = np.abs(encoded(seen.pixels / seen.illumination[..., None]) - encoded(expected))[inner]
     assert error.mean() < 1, error.mean()
-    assert np.abs(encoded(picture) - encoded(wanted))[inner].mean() > 10  # the blur is no trifle
+    assert np.abs(encoded(picture) - encoded(expected))[inner].mean() > 10  # the blur is no trifle
 
 
 @pytest.mark.parametrize(
@@ -133,13 +133,13 @@ def test_lateral_colour_is_that_of_chief_rays() -> None:
         -lens.spot(-math.degrees(math.atan(tangent)), object_distance_m=math.inf, wavelength_nm=nm).chief_ray_mm[1]
         for nm in colours
     ])  # fmt: skip
-    wanted = seen.weights.T @ heights  # the mean of a channel's colours
+    expected = seen.weights.T @ heights  # the mean of a channel's colours
     found = np.array([
         float(np.interp(centre_of_light(seen.pixels[:, 10, c]), np.arange(1901), seen.y_mm)) for c in range(3)
     ])  # fmt: skip
     pitch = seen.y_mm[0] - seen.y_mm[1]
-    assert wanted[0] - wanted[2] > 2 * pitch
-    assert found[0] - found[2] == pytest.approx(wanted[0] - wanted[2], abs=0.1 * pitch)
+    assert expected[0] - expected[2] > 2 * pitch
+    assert found[0] - found[2] == pytest.approx(expected[0] - expected[2], abs=0.1 * pitch)
 
 
 @pytest.mark.slow
@@ -242,9 +242,9 @@ def test_lenses_that_are_not_of_revolution(name: str) -> None:
         return np.asarray(-direction[:2] / direction[2])
 
     per_height = 2 * math.tan(math.radians(0.5 * seen.height_deg))
-    wanted = np.array([(64 + 0.5 - 45.5) / 61, (30.5 - 19.5) / 61]) * per_height
+    expected = np.array([(64 + 0.5 - 45.5) / 61, (30.5 - 19.5) / 61]) * per_height
     found = tangents((-x, -y)) - tangents((0.0, 0.0))
-    np.testing.assert_allclose(found, wanted, atol=0.6 / 122 * per_height)  # half a pixel
+    np.testing.assert_allclose(found, expected, atol=0.6 / 122 * per_height)  # half a pixel
 
 
 @pytest.mark.parametrize(
@@ -295,10 +295,10 @@ def test_the_command(command: Command, tmp_path: Path) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (0, f"wrote {target}\n", "")
     seen = image_file.read_picture(target)
     assert seen.shape == (20, 30, 3)
-    wanted = rc.image_simulation(
+    expected = rc.image_simulation(
         rc.Lens.load("double-gauss-50mm").stopped_down(8), chart, psf_grid=(2, 2), wavelengths_nm=550, height_deg=40
     )
-    np.testing.assert_array_equal(encoded(seen).round(), wanted.developed())
+    np.testing.assert_array_equal(encoded(seen).round(), expected.developed())
     assert seen[10, 15].min() > 0.995  # white is white
     done = command("lens", "image", "double-gauss-50mm", chart, "-o", target, *options, "--psfs", "-q")
     assert (done.returncode, done.stdout) == (0, "")

@@ -29,8 +29,8 @@ def test_a_sharper_lens_is_written_and_keeps_its_focal_length(
     before, after = rc.Lens.load("cooke-triplet-50mm"), rc.Lens.load(out)
     assert after.surfaces[0].curvature_per_mm != before.surfaces[0].curvature_per_mm
     # An error of 1 mm counts as 0.1 mm of all spots, which are of hundredths.
-    wanted = before.first_order().effective_focal_length_mm
-    assert after.first_order().effective_focal_length_mm == pytest.approx(wanted, abs=0.1)
+    expected = before.first_order().effective_focal_length_mm
+    assert after.first_order().effective_focal_length_mm == pytest.approx(expected, abs=0.1)
 
 
 def test_an_interruption_writes_the_best_lens_and_ends_in_130(

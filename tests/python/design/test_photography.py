@@ -88,8 +88,8 @@ def test_equation_8_is_the_exact_depth_less_one_factor() -> None:
 def test_blur_of_a_defocused_lens_is_its_disc() -> None:
     """A uniform disc's diameter is sqrt(8) times its RMS radius. Here it is A |s'' - s'| / s'' by similar triangles."""
     lens = thin_lens()
-    wanted = 5.0 * 100 / 10_000  # stop of 5 mm; an object at 10 m is imaged f^2 / (s - f) behind the film
-    assert blur_diameter_mm(lens, 10.0) == pytest.approx(wanted, rel=3e-3)
+    expected = 5.0 * 100 / 10_000  # stop of 5 mm; an object at 10 m is imaged f^2 / (s - f) behind the film
+    assert blur_diameter_mm(lens, 10.0) == pytest.approx(expected, rel=3e-3)
 
 
 def test_a_lens_that_is_never_sharp_says_so() -> None:

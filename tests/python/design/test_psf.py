@@ -62,12 +62,12 @@ def stop_rays(lens: rc.Lens, field: float) -> tuple[np.ndarray, np.ndarray]:
 
 def psf_of_prysm(lens: rc.Lens, field: float, psf: rc.PSF, cells: int = 256) -> np.ndarray:
     propagation = pytest.importorskip("prysm.propagation", reason="prysm comes with the dev extra")
-    cosines, wanted = stop_rays(lens, field)
+    cosines, expected = stop_rays(lens, field)
     middle = (cosines.max(axis=0) + cosines.min(axis=0)) / 2
     half = 1.03 * np.ptp(cosines, axis=0).max() / 2
     basis = polynomials((cosines - middle) / half)
-    fit = np.linalg.lstsq(basis, wanted, rcond=None)[0]
-    assert np.abs(basis @ fit - wanted).max() < 1e-5
+    fit = np.linalg.lstsq(basis, expected, rcond=None)[0]
+    assert np.abs(basis @ fit - expected).max() < 1e-5
     step = 2 / cells
     axis = (np.arange(cells) - cells // 2) * step
     x, y = np.meshgrid(axis, axis)

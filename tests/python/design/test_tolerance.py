@@ -171,9 +171,9 @@ def test_the_lens_as_drawn_has_the_mtf_of_the_analysis():
     lens = Lens.load("double-gauss-50mm").stopped_down(4)
     study = study_of(lens, 1, radius_percent=0.01, fields_deg=[0, 8], frequencies_per_mm=[10, 20])
     true = analysis.mtf(lens, [0, 8], [10, 20], wavelengths_nm=[587.5618])
-    for way, name in enumerate(("tangential", "sagittal")):
+    for direction, name in enumerate(("tangential", "sagittal")):
         # Rays and the limit of a pupil that is taken for an ellipse stand for waves.
-        assert np.abs(study.nominal.mtf[0, :, way] - getattr(true, name)[0]).max() < 0.03
+        assert np.abs(study.nominal.mtf[0, :, direction] - getattr(true, name)[0]).max() < 0.03
 
 
 def test_an_element_is_moved_back_to_its_place():
@@ -344,6 +344,12 @@ def test_the_command_writes_a_report_and_json(tmp_path, command):
     assert told["quantiles"]["mtf"]["0.5"] == pytest.approx(study.quantiles("mtf", [0.5])[0])
     page = report.read_text()
     assert "Worst offenders" in page and page.count("<tr>") > len(study.items)
+
+
+def test_a_curved_film_is_refused() -> None:
+    curved = rc.Lens.load("double-gauss-50mm").with_film_radius(-60)
+    with pytest.raises(rc.InputError, match=r"tolerances need a flat film.*is curved"):
+        tolerance_study(curved, "precision", copies=1)
 
 
 @pytest.mark.parametrize("name", ["schmidt-225mm", "view-camera-210mm"])

@@ -161,8 +161,8 @@ def test_light_of_a_colour_goes_its_own_way() -> None:
     width, height = lens.film_mm
     for i in seen:
         back = lens.trace(o[i : i + 1], -d[i : i + 1], wavelength_nm=float(nm[0][i]), start="scene")
-        at, way = back.origins_mm[0], back.directions[0]
-        x, y = (at + way * ((lens.film_position_mm - at[2]) / way[2]))[:2]
+        at, direction = back.origins_mm[0], back.directions[0]
+        x, y = (at + direction * ((lens.film_position_mm - at[2]) / direction[2]))[:2]
         # float32 leaves 1e-4 mm; at the design wavelength instead, rays of the corners land 0.03 mm away.
         assert x == pytest.approx((0.5 - place[0, i]) * width, abs=1e-3)
         assert y == pytest.approx((place[1, i] - 0.5) * height, abs=1e-3)

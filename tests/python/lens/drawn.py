@@ -95,10 +95,10 @@ def rays(drawn: Drawn, start: str, seed: int, count: int = 64) -> tuple[np.ndarr
     rng = np.random.default_rng(seed)
     size = drawn.size
     first = drawn.rows[0] if start == "scene" else drawn.rows[-1]
-    way = 1.0 if start == "scene" else -1.0
+    direction = 1.0 if start == "scene" else -1.0
     z = 0.0 if start == "scene" else drawn.lens().vertices_mm[-1]
     turn, radius = rng.uniform(0, 2 * np.pi, count), first.rim * size * np.sqrt(rng.uniform(0, 1, count))
     target = np.stack([radius * np.cos(turn), radius * np.sin(turn), np.full(count, z)], axis=1)
     spread = 10 ** rng.uniform(-3, 0, (count, 1))
-    directions = np.concatenate([spread * rng.uniform(-1, 1, (count, 2)), np.full((count, 1), way)], axis=1)
+    directions = np.concatenate([spread * rng.uniform(-1, 1, (count, 2)), np.full((count, 1), direction)], axis=1)
     return target - rng.uniform(2, 5, (count, 1)) * size * directions, directions

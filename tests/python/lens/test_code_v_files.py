@@ -32,11 +32,11 @@ def passed(
     lens: rc.Lens, angle_deg: tuple[float, float], half_width: float, film_z: float, centre_y: float = 0.0
 ) -> np.ndarray:
     """Points at which a bundle of parallel rays intersects a plane perpendicular to the lens frame's z axis."""
-    way = np.array([*np.tan(np.deg2rad(angle_deg)), 1.0])
-    way /= np.linalg.norm(way)
+    ray_direction = np.array([*np.tan(np.deg2rad(angle_deg)), 1.0])
+    ray_direction /= np.linalg.norm(ray_direction)
     grid = np.stack(np.meshgrid(*[np.linspace(-half_width, half_width, 25)] * 2), -1).reshape(-1, 2)
-    origins = np.column_stack([grid[:, 0], grid[:, 1] + centre_y, np.zeros(len(grid))]) - 100 * way
-    traced = lens.trace(origins, np.tile(way, (len(origins), 1)), start="scene")
+    origins = np.column_stack([grid[:, 0], grid[:, 1] + centre_y, np.zeros(len(grid))]) - 100 * ray_direction
+    traced = lens.trace(origins, np.tile(ray_direction, (len(origins), 1)), start="scene")
     ok = traced.status == rc.RayStatus.OK
     at, direction = traced.origins_mm[ok], traced.directions[ok]
     return at + direction * ((film_z - at[:, 2]) / direction[:, 2])[:, None]
@@ -97,8 +97,8 @@ def test_a_reverse_decentre_undoes_an_ordinary_one(tmp_path):
 
 def test_a_bend_turns_the_axis_as_a_mirror_turns_light(tmp_path):
     lens = code_v(tmp_path, STOP, "S 0 -30 REFL\nBEN\nADE 40", "S 0 -20 600.400", "S 0 -50", image="SI 0 0")
-    way = np.array([[0.0, 0, 1]])
-    traced = lens.trace(np.array([[0.0, 0, -5]]), way, start="scene")
+    ray_direction = np.array([[0.0, 0, 1]])
+    traced = lens.trace(np.array([[0.0, 0, -5]]), ray_direction, start="scene")
     # CODE V's alpha counts clockwise: the mirror's upper half leans towards the light, and turns it downwards.
     np.testing.assert_allclose(traced.directions[0], [0, -np.sin(np.deg2rad(80)), -np.cos(np.deg2rad(80))], atol=1e-12)
     np.testing.assert_allclose(lens.surfaces[1].tilt_deg, (-40, 0, 0))

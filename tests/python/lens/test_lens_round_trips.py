@@ -63,7 +63,7 @@ APERTURES: dict[str, tuple[dict, tuple[str, ...]]] = {
     ),
 }
 
-PLACES: dict[str, dict] = {
+PLACEMENTS: dict[str, dict] = {
     "one surface": {"tilt_deg": (2, -3, 10), "decentre_mm": (0.2, -0.3, 0.1), "returns": True},
     "all that follow": {"tilt_deg": (2, -3, 10), "decentre_mm": (0.2, -0.3, 0.1)},
 }
@@ -133,9 +133,9 @@ def test_apertures(tmp_path, suffix, name):
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
-@pytest.mark.parametrize("name", PLACES)
+@pytest.mark.parametrize("name", PLACEMENTS)
 def test_places(tmp_path, suffix, name):
-    check(double_gauss().with_surface(2, **PLACES[name]), 2, tmp_path / f"lens{suffix}", ())
+    check(double_gauss().with_surface(2, **PLACEMENTS[name]), 2, tmp_path / f"lens{suffix}", ())
 
 
 @pytest.mark.parametrize("suffix", FORMATS)

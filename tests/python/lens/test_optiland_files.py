@@ -109,8 +109,8 @@ def test_a_mirror_that_folds_the_axis(tmp_path):
     for axis in (0, 1):
         origins = np.zeros((7, 3))
         origins[:, axis], origins[:, 2] = heights, -5
-        way = np.tile([0.0, 0, 1], (7, 1))
-        folded, plain = (each.trace(origins, way, start="scene") for each in (lens, straight))
+        direction = np.tile([0.0, 0, 1], (7, 1))
+        folded, plain = (each.trace(origins, direction, start="scene") for each in (lens, straight))
         assert (folded.status == rc.RayStatus.OK).all()
         # Rays are given in the frame in front of the lens. The fold has turned the axis into y, and y into z.
         np.testing.assert_allclose(folded.directions[:, 1], plain.directions[:, 2], atol=1e-12)

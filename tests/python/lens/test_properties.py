@@ -236,7 +236,7 @@ def test_any_wavelength_is_traced_or_refused(name: str, wavelength_nm: float, se
     check_sane(out, len(lens.surfaces))
 
 
-PLACES = st.tuples(ANY, ANY, ANY)
+POINTS = st.tuples(ANY, ANY, ANY)
 USUAL = st.floats(0.1, 10)
 
 
@@ -246,9 +246,9 @@ USUAL = st.floats(0.1, 10)
     st.fixed_dictionaries(
         {},
         optional={
-            "position": PLACES,
-            "look_at": PLACES,
-            "up": PLACES,
+            "position": POINTS,
+            "look_at": POINTS,
+            "up": POINTS,
             "exposure_time_s": ANY,
             "iso": ANY,
         },

@@ -192,11 +192,11 @@ def test_rays_land_on_the_curved_film() -> None:
     ok = out.status == 0
     assert ok.sum() > 30
     x, y, z, middle = camera.film_frame
-    at, way = (v[ok] @ np.array([x, y, z]).T for v in (out.origins_mm - middle, out.directions))
+    at, direction = (v[ok] @ np.array([x, y, z]).T for v in (out.origins_mm - middle, out.directions))
     centre = np.array([0, 0, camera.film_radius_of_curvature_mm])
-    along = ((centre - at) * way).sum(1)
+    along = ((centre - at) * direction).sum(1)
     off = ((centre - at) ** 2).sum(1) - along**2
-    lands = at + (along - np.sqrt(camera.film_radius_of_curvature_mm**2 - off))[:, None] * way
+    lands = at + (along - np.sqrt(camera.film_radius_of_curvature_mm**2 - off))[:, None] * direction
     np.testing.assert_allclose(spot.points_mm[ok], lands[:, :2], atol=1e-9)
 
 

@@ -23,12 +23,12 @@ def between(lens: rc.Lens, shares: int = 5) -> list[float]:
 @pytest.mark.parametrize("name", ZOOMS)
 def test_the_focal_length_is_the_one_asked_for(name: str) -> None:
     lens = rc.Lens.load(name)
-    for wanted in between(lens):
-        there = lens.zoomed(wanted)
-        assert there.first_order().effective_focal_length_mm == pytest.approx(wanted, rel=1e-9)
+    for required in between(lens):
+        there = lens.zoomed(required)
+        assert there.first_order().effective_focal_length_mm == pytest.approx(required, rel=1e-9)
         assert there.zoom_positions == lens.zoom_positions
         # Spacings stay between those of the two neighbouring positions, so that glasses cannot collide.
-        k = int(np.searchsorted(lens.zoom_focal_lengths_mm, wanted))
+        k = int(np.searchsorted(lens.zoom_focal_lengths_mm, required))
         before, after = (lens.zoomed(i) for i in (k - 1, k))
         for a, b, c in zip(before.surfaces[:-1], there.surfaces[:-1], after.surfaces[:-1], strict=True):
             low, high = sorted((a.thickness_mm, c.thickness_mm))
@@ -59,17 +59,17 @@ def test_two_groups_have_the_spacing_of_the_closed_form() -> None:
     ends = [lens.zoomed(p) for p in (lens.zoom_positions[0], lens.zoom_positions[-1])]
     d = [end.surfaces[moved].thickness_mm for end in ends]
     power = [1 / end.first_order().effective_focal_length_mm for end in ends]
-    for wanted in (27.0, 31.7, 44.0):
-        expected = d[0] + (1 / wanted - power[0]) * (d[1] - d[0]) / (power[1] - power[0])
+    for required in (27.0, 31.7, 44.0):
+        expected = d[0] + (1 / required - power[0]) * (d[1] - d[0]) / (power[1] - power[0])
         # The focal length is solved for to 1e-12 in its logarithm; a spacing follows it 1.5 times in mm per mm.
-        assert lens.zoomed(wanted).surfaces[moved].thickness_mm == pytest.approx(expected, abs=1e-7)
+        assert lens.zoomed(required).surfaces[moved].thickness_mm == pytest.approx(expected, abs=1e-7)
 
 
 def test_the_film_is_where_far_light_is_sharpest() -> None:
     # A lens that moves as a whole, whose file has the film there in each position.
     lens = rc.Lens.load("zoom-25-50mm")
-    for wanted in (27.0, 40.0):
-        there = lens.zoomed(wanted)
+    for required in (27.0, 40.0):
+        there = lens.zoomed(required)
         assert there.film_distance_mm == pytest.approx(there.focused(math.inf).film_distance_mm, abs=1e-6)
 
 
@@ -84,9 +84,9 @@ def test_a_focus_shift_of_the_positions_goes_over_from_one_to_the_next(tmp_path:
     (tmp_path / "shifts.toml").write_text(head + "".join(tables), encoding="utf-8")
     shifting = rc.Lens.load(tmp_path / "shifts.toml")
     curve = PchipInterpolator(np.log(lens.zoom_focal_lengths_mm), shifts)
-    for wanted in between(lens):
-        shift = shifting.zoomed(wanted).film_distance_mm - lens.zoomed(wanted).film_distance_mm
-        assert shift == pytest.approx(float(curve(np.log(wanted))), abs=1e-6)
+    for required in between(lens):
+        shift = shifting.zoomed(required).film_distance_mm - lens.zoomed(required).film_distance_mm
+        assert shift == pytest.approx(float(curve(np.log(required))), abs=1e-6)
 
 
 def test_rings_stay_as_they_are() -> None:
@@ -102,9 +102,9 @@ def test_rings_stay_as_they_are() -> None:
 
 def test_focal_lengths_that_it_has_not_are_refused() -> None:
     lens = rc.Lens.load("zoom-70-200mm")
-    for wanted in (70.0, 300.0, math.nan, -1.0):
+    for required in (70.0, 300.0, math.nan, -1.0):
         with pytest.raises(rc.InputError, match=r"has no focal length of .* mm; it zooms from 72.091 to 194 mm"):
-            lens.zoomed(wanted)
+            lens.zoomed(required)
     with pytest.raises(rc.InputError, match="has no zoom position 100; it has 3, counted from 0"):
         lens.zoomed(100)
     with pytest.raises(rc.InputError, match="has no focal lengths between zoom positions; it has fewer than two"):

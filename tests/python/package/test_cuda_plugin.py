@@ -60,8 +60,8 @@ def test_a_gpu_that_is_asked_for_is_an_error(useless: tuple[object, str], tmp_pa
     plugin, why = useless
     scene = tmp_path / "triangle.obj"
     scene.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    wanted = ["--lens", "double-gauss-50mm", "--device", "cuda", "-o", tmp_path / "picture.png"]
-    done = run(PYTHON, plugin, "render", scene, *wanted)
+    expected = ["--lens", "double-gauss-50mm", "--device", "cuda", "-o", tmp_path / "picture.png"]
+    done = run(PYTHON, plugin, "render", scene, *expected)
     (line,) = done.stderr.splitlines()
     assert (done.returncode, line[:16]) == (2, "realcam: error: ")
     assert why in line

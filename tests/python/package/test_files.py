@@ -19,13 +19,13 @@ def mode(path: Path) -> int:
 
 
 def test_a_file_that_is_replaced_keeps_its_mode(tmp_path: Path) -> None:
-    for wanted in (0o600, 0o640, 0o755):
-        path = tmp_path / f"{wanted:o}"
+    for expected in (0o600, 0o640, 0o755):
+        path = tmp_path / f"{expected:o}"
         path.write_text("before")
-        path.chmod(wanted)
+        path.chmod(expected)
         assert write_whole(path, b"after")
         assert path.read_bytes() == b"after"
-        assert mode(path) == wanted
+        assert mode(path) == expected
 
 
 def test_a_new_file_has_the_mode_of_the_umask(tmp_path: Path) -> None:

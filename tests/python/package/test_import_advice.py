@@ -15,7 +15,7 @@ PACKAGES = Path(realcam.__file__).parents[1]
 
 
 @pytest.mark.parametrize(
-    ("said", "wanted"),
+    ("said", "expected"),
     [
         # Messages of glibc's loader.
         ("/lib/x86_64-linux-gnu/libm.so.6: version `GLIBC_2.34' not found (required by _core.so)", "glibc 2.34 or"),
@@ -23,9 +23,9 @@ PACKAGES = Path(realcam.__file__).parents[1]
         ("cannot import name '_core' from partially initialized module 'realcam'", "is not built for Python 3."),
     ],
 )
-def test_a_sentence_says_what_to_do(said: str, wanted: str) -> None:
+def test_a_sentence_says_what_to_do(said: str, expected: str) -> None:
     text = str(advised(ImportError(said)))
-    assert wanted in text
+    assert expected in text
     assert "build" in text.partition(";")[2]
     assert "\n" not in text
 
@@ -54,7 +54,7 @@ def test_a_package_without_its_extension_says_so(tmp_path: Path, words: list[str
 
 
 @pytest.mark.parametrize(
-    ("missing", "words", "wanted"),
+    ("missing", "words", "expected"),
     [
         *((name, ["view"], f"the lens bench needs {name}; pip install realcam[view] brings it") for name in VIEW),
         ("OpenImageIO", ["render", "scene.obj", "--lens", "double-gauss-50mm", "--spp", "1", "-o", "a.png"],
@@ -62,7 +62,7 @@ def test_a_package_without_its_extension_says_so(tmp_path: Path, words: list[str
     ],
 )  # fmt: skip
 def test_a_missing_package_is_told_with_what_brings_it(
-    tmp_path: Path, missing: str, words: list[str], wanted: str
+    tmp_path: Path, missing: str, words: list[str], expected: str
 ) -> None:
     """The packages of realcam[denoise] and realcam[raw] are tested in test_denoiser.py and test_sensor_hard.py."""
     (tmp_path / "scene.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
@@ -71,5 +71,5 @@ def test_a_missing_package_is_told_with_what_brings_it(
     *_, last = done.stderr.splitlines()
     assert done.returncode == 2
     assert last.startswith("realcam: error: ")
-    assert wanted in last
+    assert expected in last
     assert not (tmp_path / "a.png").exists()

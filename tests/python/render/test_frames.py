@@ -179,7 +179,7 @@ def test_the_executable_says_what_makes_films(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "wanted"),
+    ("words", "required"),
     [
         ("render -oa.png --fps 0 --frames 1-2", "--fps must be more than 0 frames per second"),
         ("render -onowhere/a.png --frames 1-2", "nowhere"),
@@ -194,12 +194,12 @@ def test_the_executable_says_what_makes_films(folder: Path) -> None:
         ("job make -oa.job --frames=", '--frames: "": expected a number, 1-240 or 1-240x2'),
     ],
 )
-def test_films_that_cannot_be_are_refused(folder: Path, command: Command, words: str, wanted: str) -> None:
+def test_films_that_cannot_be_are_refused(folder: Path, command: Command, words: str, required: str) -> None:
     if ".mp4" in words:
         pytest.importorskip("av", reason="realcam[video] is missing")
     done = command(*words.split(), "pan.toml")
     assert done.returncode == 2
-    assert done.stderr.startswith("realcam: error: ") and wanted in done.stderr
+    assert done.stderr.startswith("realcam: error: ") and required in done.stderr
     assert done.stderr.count("\n") == 1
     assert not list(folder.glob("a*"))
     with pytest.raises(rc.InputError, match="frame numbers must be 0 or more"):

@@ -112,12 +112,12 @@ def test_blades(tmp_path: Path) -> None:
     assert lens.iris_rotation_deg == pytest.approx(15)
     assert lens.first_order().f_number == pytest.approx(8)
     assert rc.render(shot.scene, shot.camera, effects=(), spp=1).metadata()["realcam:blades"] == "7"
-    for line, wanted in (
+    for line, required in (
         ("blades = 2", r"shot\.toml:5: the iris has 2 blades; expected 0 \(round\) or 3 to 24"),
         ("blade_rounding = 1.5", r"shot\.toml:5: the rounding of the iris"),
         ("blade_rotation_deg = 10", "the diaphragm of double-gauss-50mm is round"),
     ):
-        with pytest.raises(rc.InputError, match=wanted):
+        with pytest.raises(rc.InputError, match=required):
             load(tmp_path, base + line + "\n")
 
 

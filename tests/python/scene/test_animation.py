@@ -157,7 +157,7 @@ def test_what_is_not_played_is_said(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("times", "values", "interpolation", "wanted"),
+    ("times", "values", "interpolation", "required"),
     [
         ([0, 0], [[0, 0, 0]] * 2, "LINEAR", "channel 0: its times must be strictly increasing"),
         ([0, np.nan], [[0, 0, 0]] * 2, "LINEAR", "a time must lie within 1e9 s"),
@@ -169,9 +169,9 @@ def test_what_is_not_played_is_said(tmp_path: Path) -> None:
     ],
 )
 def test_keys_that_are_none_are_refused(
-    tmp_path: Path, times: list[float], values: list[list[float]], interpolation: str, wanted: str
+    tmp_path: Path, times: list[float], values: list[list[float]], interpolation: str, required: str
 ) -> None:
     gltf = Gltf()
     gltf.animate(gltf.node("box"), "translation", times, values, interpolation)
-    with pytest.raises(rc.SceneFileError, match=wanted):
+    with pytest.raises(rc.SceneFileError, match=required):
         gltf.load(tmp_path)

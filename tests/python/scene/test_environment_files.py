@@ -209,8 +209,8 @@ def test_openexr_cube_maps(tmp_path: Path) -> None:
     squares = []
     for axes in FACES:
         forward, to_right, upwards = (np.array(axis) for axis in axes)
-        way = forward + right[..., None] * to_right + up[..., None] * upwards
-        squares.append(light_in(way / np.linalg.norm(way, axis=-1, keepdims=True)))
+        ray_direction = forward + right[..., None] * to_right + up[..., None] * upwards
+        squares.append(light_in(ray_direction / np.linalg.norm(ray_direction, axis=-1, keepdims=True)))
     write_exr(tmp_path / "cube.exr", np.concatenate(squares), envmap=1)
     measured = read(tmp_path / "cube.exr")
     assert measured.shape == (66, 132, 3)

@@ -176,10 +176,10 @@ def test_small_lamps_far_away(device: str, backend: str) -> None:
     worst, distances = 0.0, (1e2, 1e3, 1e4, 1e5)
     card = scenes.quad((0, 0, 0), 1, right=(-1, 0, 0), diffuse=ALBEDO)  # faces the lamp, as the camera does
     camera = scenes.pinhole(position=(0, 0, -1), look_at=(0, 0, 0))
-    way, right, up = tilted_axes((0.6, 0.5, 0.7))
+    direction, right, up = tilted_axes((0.6, 0.5, 0.7))
     for distance in distances:
-        lamp = scenes.quad(tuple(-distance * way), 5e-4, right=tuple(right), up=tuple(up), emission=1e12)
-        expected = ALBEDO / math.pi * 1e12 * 1e-6 * way[2] / distance**2
+        lamp = scenes.quad(tuple(-distance * direction), 5e-4, right=tuple(right), up=tuple(up), emission=1e12)
+        expected = ALBEDO / math.pi * 1e12 * 1e-6 * direction[2] / distance**2
         found = seen(scenes.scene_of(card, lamp), camera, device).mean()
         worst = max(worst, abs(float(found / expected) - 1))
     what, tried = "lamp of 1 mm at 1e2 to 1e5 m: L A cos / d^2", f"{len(distances)} distances, 384 pixels of 16 samples"

@@ -121,8 +121,8 @@ def test_shadow_on_the_largest_ground(size: float, device: str, backend: str) ->
     rays = camera.generate_rays(spp=256)
     o, d = rays.origins_m, rays.directions.astype(np.float64)
 
-    def on_card(start: np.ndarray, way: np.ndarray) -> np.ndarray:
-        at = start + ((size - start @ n) / (way @ n))[:, None] * way
+    def on_card(start: np.ndarray, direction: np.ndarray) -> np.ndarray:
+        at = start + ((size - start @ n) / (direction @ n))[:, None] * direction
         return (np.abs(at @ right) < size) & (np.abs(at @ up) < size)
 
     ground = o - ((o @ n) / (d @ n))[:, None] * d

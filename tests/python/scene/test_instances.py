@@ -57,7 +57,7 @@ GROUND = scene_of(
     quad((0, 4, -2), 1, right=(1, 0, 0), up=(0, 0, 1), emission=5000),
 ).with_environment((200, 250, 300))
 
-PLACES = [
+TRANSFORMS = [
     placed(-1.2, 0.6, -1, turn=0.4),
     placed(0.1, 0.9, -1.5, turn=2, scale=1.5),
     placed(1.2, 0.4, -0.5, scale=(-0.7, 0.7, 0.7)),
@@ -90,9 +90,9 @@ def hold_same(one: rc.Scene, other: rc.Scene, device: str, **more: object) -> No
 
 def test_instances_look_like_their_triangles(device: str) -> None:
     objects = GROUND
-    for matrix in PLACES:
+    for matrix in TRANSFORMS:
         objects = objects.with_instance(as_scene(ball()), matrix)
-    triangles = union([as_scene(ball(), matrix) for matrix in PLACES])
+    triangles = union([as_scene(ball(), matrix) for matrix in TRANSFORMS])
     hold_same(objects, triangles, device, spp=32, max_bounces=2)
     assert objects.triangle_count == triangles.triangle_count == GROUND.triangle_count + 3 * len(ball()[1])
 
@@ -135,16 +135,16 @@ def test_a_point_light_moves_with_its_object(device: str) -> None:
 
 def test_a_moved_object_is_where_it_was_put(device: str) -> None:
     scene = GROUND
-    for i, matrix in enumerate(PLACES):
+    for i, matrix in enumerate(TRANSFORMS):
         scene = scene.with_instance(as_scene(ball(), material=LAMP), matrix, name=f"egg {i}")
     picture(scene, device)
     where = placed(0.5, 1.2, 0, turn=1)
     anew = GROUND
-    for matrix in (PLACES[0], where, PLACES[2]):
+    for matrix in (TRANSFORMS[0], where, TRANSFORMS[2]):
         anew = anew.with_instance(as_scene(ball(), material=LAMP), matrix)
     hold_same(scene.moved("egg 1", where), anew, device)
     # The scene itself has stayed what it was.
-    np.testing.assert_array_equal(scene.instances[1][1], PLACES[1])
+    np.testing.assert_array_equal(scene.instances[1][1], TRANSFORMS[1])
     assert [name for name, _ in scene.instances] == ["egg 0", "egg 1", "egg 2"]
 
 
@@ -248,11 +248,11 @@ def test_a_large_object_that_comes_near_is_placed_anew(device: str) -> None:
 def test_objects_of_objects(device: str) -> None:
     hat = placed(0, 0.9, 0, scale=0.5)
     pair = as_scene(ball()).with_instance(as_scene(ball()), hat, name="hat")
-    scene = GROUND.with_instance(pair, PLACES[0], name="egg")
+    scene = GROUND.with_instance(pair, TRANSFORMS[0], name="egg")
     assert [name for name, _ in scene.instances] == ["egg", "egg/hat"]
     assert [name for name, _ in GROUND.with_instance(pair).instances] == ["", "hat"]
     # One that moves takes its parts along.
-    for whole, place in ((scene, PLACES[0]), (scene.moved("egg", PLACES[1]), PLACES[1])):
+    for whole, place in ((scene, TRANSFORMS[0]), (scene.moved("egg", TRANSFORMS[1]), TRANSFORMS[1])):
         flat = union([as_scene(ball(), place), as_scene(ball(), place @ hat)])
         hold_same(whole, flat, device)
 
@@ -310,7 +310,7 @@ def test_an_instance_that_cannot_be_moved_is_told(which: object, place: object, 
         scene.moved(which, place)
 
 
-def places_of(scene: rc.Scene) -> dict[str, list[float]]:
+def positions_of(scene: rc.Scene) -> dict[str, list[float]]:
     """Position of each instance's origin."""
     return {name: list(matrix[:3, 3]) for name, matrix in scene.instances}
 
@@ -322,13 +322,13 @@ def test_an_instance_takes_its_own_parts_along_and_no_others() -> None:
     scene = GROUND.with_instance(CAR, name="car").with_instance(CAR, placed(10, 0, 0), name="car")
     # A name that only looks like that of a part.
     scene = scene.with_instance(as_scene(ball()), placed(5, 0, 0), name="car/flag")
-    assert list(places_of(scene)) == ["car", "car/wheel", "car.2", "car.2/wheel", "car/flag"]
-    moved = places_of(scene.moved(0, placed(0, 0, 3)))
+    assert list(positions_of(scene)) == ["car", "car/wheel", "car.2", "car.2/wheel", "car/flag"]
+    moved = positions_of(scene.moved(0, placed(0, 0, 3)))
     assert moved["car"] == [0, 0, 3]
     assert moved["car/wheel"] == [1, 0, 3]
     assert [moved[name][0] for name in ("car.2", "car.2/wheel", "car/flag")] == [10, 11, 5]
-    assert places_of(scene.moved("car", placed(0, 0, 3))) == moved
-    assert places_of(scene.moved("car.2", placed(20, 0, 0)))["car.2/wheel"] == [21, 0, 0]
+    assert positions_of(scene.moved("car", placed(0, 0, 3))) == moved
+    assert positions_of(scene.moved("car.2", placed(20, 0, 0)))["car.2/wheel"] == [21, 0, 0]
 
 
 def test_parts_of_parts_move_with_the_whole_and_without_a_name() -> None:
@@ -339,7 +339,7 @@ def test_parts_of_parts_move_with_the_whole_and_without_a_name() -> None:
         [0, 0, 0], [0, 0, 2], [1, 0, 2], [7, 4, 0], [7, 4, 2], [8, 4, 2]
     ]  # fmt: skip
     # A part that was moved on its own stays where it was put in the whole.
-    apart = places_of(
+    apart = positions_of(
         GROUND.with_instance(CAR, name="car").moved("car/wheel", placed(0, 5, 0)).moved("car", placed(3, 0, 0))
     )
     assert apart["car/wheel"] == [3, 5, 0]

@@ -194,13 +194,13 @@ def test_a_spot_fades_as_the_extension_says(inner: float, outer: float) -> None:
     )
     camera = scenes.pinhole()
     points, rays = scenes.points_on_plane(camera, 16, (0, 0, -2), (0, 0, 1))
-    way = points - place
-    distance = np.linalg.norm(way, axis=1)
+    direction = points - place
+    distance = np.linalg.norm(direction, axis=1)
     cos_inner, cos_outer = np.cos(np.radians([inner, outer]))
     # KHR_lights_punctual's lightAngleScale and lightAngleOffset.
     scale = 1 / max(1e-3, cos_inner - cos_outer)
-    fading = np.clip(way @ axis / distance * scale - cos_outer * scale, 0, 1) ** 2
-    expected = 0.5 / math.pi * 100 * scenes.mean_over_pixels(rays, fading * -way[:, 2] / distance**3)
+    fading = np.clip(direction @ axis / distance * scale - cos_outer * scale, 0, 1) ** 2
+    expected = 0.5 / math.pi * 100 * scenes.mean_over_pixels(rays, fading * -direction[:, 2] / distance**3)
     measured = scenes.radiance(scene, camera)[..., 0]
     # For a spot that fades within a thousandth of the cosine, the cosine's rounding is 1e-4 of that range.
     np.testing.assert_allclose(measured, expected, rtol=2e-3 if inner == outer else 5e-5, atol=1e-4 * expected.max())

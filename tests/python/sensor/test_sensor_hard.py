@@ -259,7 +259,7 @@ def test_what_is_changed_is_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "wanted"),
+    ("changes", "required"),
     [
         ({"black_level_dn": 200, "adc_bits": 8}, "black_level_dn must be from 0 to half"),
         ({"dark_current_temperature_c": -300}, "from -273.15"),
@@ -267,8 +267,8 @@ def test_what_is_changed_is_told() -> None:
         ({"pixel_pitch_um": 1e-300}, "from 0.001 to 1e6"),
     ],
 )
-def test_values_beyond_sense_are_refused(changes: dict[str, object], wanted: str) -> None:
-    with pytest.raises(rc.InputError, match=wanted):
+def test_values_beyond_sense_are_refused(changes: dict[str, object], required: str) -> None:
+    with pytest.raises(rc.InputError, match=required):
         rc.Sensor.load("ideal").replace(**changes)
 
 

@@ -25,10 +25,10 @@ def test_electrons_are_poisson_distributed(mean: float) -> None:
     for i in range(len(k)):
         if expected[edges[-1] : i + 1].sum() >= 25 and expected[i + 1 :].sum() >= 25:
             edges.append(i + 1)
-    seen, wanted = np.add.reduceat(counts, edges), np.add.reduceat(expected, edges)
-    wanted[-1] = raw.mosaic.size - wanted[:-1].sum()
+    seen, required = np.add.reduceat(counts, edges), np.add.reduceat(expected, edges)
+    required[-1] = raw.mosaic.size - required[:-1].sum()
     freedom = len(seen) - 1
-    chi_square = ((seen - wanted) ** 2 / wanted).sum()
+    chi_square = ((seen - required) ** 2 / required).sum()
     assert freedom >= 1
     assert abs(chi_square - freedom) < 6 * np.sqrt(2 * freedom) + 10
 

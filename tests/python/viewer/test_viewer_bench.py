@@ -31,7 +31,7 @@ pytestmark = pytest.mark.picture_files
 BenchOf = Callable[..., LensBench]
 
 
-class Told:
+class BenchRecorder:
     """Records the notifications that a page would receive."""
 
     def __init__(self, bench: LensBench) -> None:
@@ -55,7 +55,7 @@ class Told:
         with self.news:
             assert self.news.wait_for(has_come, 60)
 
-    def until_shown(self) -> Told:
+    def until_shown(self) -> BenchRecorder:
         self.bench.show()
         self.until_final()
         return self
@@ -66,8 +66,8 @@ class Told:
         def frames() -> list[Any]:
             return [frame for s, frame in self.frames if s == slot]
 
-        wanted = self.bench.requested_serials[slot]
-        self.until(lambda: frames() and frames()[-1].is_final and frames()[-1].serial >= wanted)
+        required = self.bench.requested_serials[slot]
+        self.until(lambda: frames() and frames()[-1].is_final and frames()[-1].serial >= required)
         return frames()[-1]
 
 
@@ -95,19 +95,19 @@ def test_the_bench_begins_with_the_shot(bench: LensBench, shot_path: Path) -> No
     assert bench.controls.camera.film == shot.camera.film
     assert bench.controls.focus_m == pytest.approx(bench_shots.MIDDLE_M)
     bench.noise_codes = 1.0
-    told = Told(bench).until_shown()
-    told.until(lambda: told.lenses)
+    recorder = BenchRecorder(bench).until_shown()
+    recorder.until(lambda: recorder.lenses)
     picture = rc.render(shot.scene, shot.camera, effects=(), spp=256, device="cpu")
     difference = codes(bench).astype(float) - rc._core.develop(picture.pixels, 100)
     assert math.sqrt(np.mean(difference**2)) < 2  # refined to the noise of one code
 
 
 def test_a_click_focuses_at_its_point(bench: LensBench) -> None:
-    told = Told(bench).until_shown()
+    recorder = BenchRecorder(bench).until_shown()
     for u, distance in ((1 / 6, bench_shots.NEAR_M), (5 / 6, bench_shots.FAR_M), (1 / 2, bench_shots.MIDDLE_M)):
         assert bench.focus_at(u, 0.5)
         assert bench.controls.focus_m == pytest.approx(distance, rel=0.01)
-        told.until_final()
+        recorder.until_final()
         sharp = bench_shots.sharpness(codes(bench))
         assert np.argmax(sharp) == round(3 * u - 0.5)
 
@@ -136,35 +136,37 @@ def test_the_zoom_ring_is_undone_by_drags(bench: LensBench) -> None:
 
 def test_the_drawing_and_the_sharp_range_are_of_the_film_that_is_chosen(bench: LensBench) -> None:
     """They ignore the lens's own film: half of a 15 mm diagonal reaches 7.5 mm from the axis, of 90 mm 45 mm."""
-    told, sharp = Told(bench), []
-    bench.listeners.sharp_range = lambda found: told.take(sharp, found)
+    recorder, sharp = BenchRecorder(bench), []
+    bench.listeners.sharp_range = lambda found: recorder.take(sharp, found)
     bench.turn("aperture", 9)
     for width, height, half in ((12.0, 9.0, 7.5), (72.0, 54.0, 45.0), (36.0, 24.0, 0.5 * math.hypot(36, 24))):
         asked = len(sharp)
         assert bench.set_film_mm(width, height)
-        told.until(lambda half=half: told.lenses and told.lenses[-1]["film"][-1][1] == pytest.approx(half, rel=1e-5))
-        told.until(lambda asked=asked: len(sharp) > asked)
-        wanted = rc.depth_of_field(bench.controls.set_lens, 2 * half / 1500).real
-        told.until(lambda wanted=wanted: sharp[-1] == pytest.approx(wanted))
+        recorder.until(
+            lambda half=half: recorder.lenses and recorder.lenses[-1]["film"][-1][1] == pytest.approx(half, rel=1e-5)
+        )
+        recorder.until(lambda asked=asked: len(sharp) > asked)
+        required = rc.depth_of_field(bench.controls.set_lens, 2 * half / 1500).real
+        recorder.until(lambda required=required: sharp[-1] == pytest.approx(required))
         assert bench.controls.lens_on_film.film_mm == (width, height)
 
 
 def test_what_was_reported_ends_with_the_next_change(bench: LensBench) -> None:
-    told = Told(bench)
+    recorder = BenchRecorder(bench)
     bench.report(Problem("no light reaches the metered point", view="picture"))
-    assert told.problems[-1] == Problem("no light reaches the metered point", view="picture")
+    assert recorder.problems[-1] == Problem("no light reaches the metered point", view="picture")
     assert bench.change(iso=200)
-    assert told.problems[-1] is None
+    assert recorder.problems[-1] is None
     assert not bench.edit(lambda lens: lens_edits.with_value(lens, 99, "radius_mm", 1.0))
-    assert told.problems[-1].view == "lens"
+    assert recorder.problems[-1].view == "lens"
     assert not bench.change(focus_m=-1.0)
-    assert told.problems[-1].view == "picture"
+    assert recorder.problems[-1].view == "picture"
 
 
 def test_metering_makes_its_point_grey_however_often(bench: LensBench) -> None:
     """Middle grey is 10 lx s over the ISO speed (ISO 12232)."""
     bench.noise_codes = 1.0
-    Told(bench).until_shown()
+    BenchRecorder(bench).until_shown()
     times = []
     for _ in range(3):
         assert bench.meter_at(0.5, 0.5)
@@ -208,19 +210,19 @@ IMPOSSIBLE: dict[str, Callable[[LensBench], object]] = {
 
 
 def test_what_is_impossible_leaves_all_as_it_was(bench: LensBench) -> None:
-    told = Told(bench)
+    recorder = BenchRecorder(bench)
     assert bench.edit(lambda lens: lens_edits.with_value(lens, 0, "thickness_mm", 3.8))
     for what, action in IMPOSSIBLE.items():
         before = state(bench)
         assert action(bench) is False, what
         assert state(bench) == before, what
-        problem = told.problems[-1]
+        problem = recorder.problems[-1]
         assert problem is not None and problem.message, what
         # The surface to blame is the third.
         assert problem.surface == (2 if what == "a radius" else None) or what in ("a stop that is deleted", "a glass")
         assert ("surface 3" in problem.message) == (what == "a radius")
         assert bench.edit(lambda lens: lens_edits.with_value(lens, 0, "thickness_mm", 3.9))
-        assert told.problems[-1] is None
+        assert recorder.problems[-1] is None
         assert bench.undo()
         assert bench.controls.lens == before[1]
 
@@ -248,16 +250,16 @@ def test_an_undo_that_cannot_be_leaves_the_history(bench: LensBench) -> None:
 
 def test_automatic_exposure_does_not_undo_what_the_user_does(bench: LensBench) -> None:
     """The picture's thread writes the time that it has metered while the user turns other rings."""
-    told = Told(bench)
+    recorder = BenchRecorder(bench)
     bench.change(is_automatic=True)
     for k in range(60):
         focus = 1.0 + 0.01 * k
         assert bench.change(focus_m=focus)
         time.sleep(0.002)
         assert bench.controls.focus_m == focus
-    told.until_final()
+    recorder.until_final()
     assert bench.controls.focus_m == focus
-    assert bench.controls.exposure_time_s == told.frames[-1][1].exposure_time_s
+    assert bench.controls.exposure_time_s == recorder.frames[-1][1].exposure_time_s
 
 
 def test_another_lens_brings_its_film_and_keeps_the_rings(bench: LensBench) -> None:
@@ -294,19 +296,19 @@ def test_an_edited_lens_comes_back_after_another(bench: LensBench) -> None:
 
 
 def test_every_bundled_lens_can_be_put_on_the_camera(bench: LensBench) -> None:
-    told = Told(bench)
+    recorder = BenchRecorder(bench)
     bench.show()
     for name in rc.lens_names():
-        assert bench.set_lens(rc.Lens.load(name)), (name, told.problems)
+        assert bench.set_lens(rc.Lens.load(name)), (name, recorder.problems)
         assert math.isfinite(bench.apertures.values[0]), name
-        told.until(lambda name=name: told.lenses and told.lenses[-1]["name"] == name)
+        recorder.until(lambda name=name: recorder.lenses and recorder.lenses[-1]["name"] == name)
 
 
 def test_switches_name_the_effects(bench: LensBench) -> None:
-    told = Told(bench)
+    recorder = BenchRecorder(bench)
     assert bench.switches.as_specs() == []
     bench.show()
-    told.until(lambda: told.plans)  # how the switches stand, where nothing is left to the planner
+    recorder.until(lambda: recorder.plans)  # how the switches stand, where nothing is left to the planner
     bench.switch("dispersion", "on")
     assert bench.switches.as_specs() == ["dispersion"]
     for effect in EFFECTS:
@@ -319,13 +321,13 @@ def test_switches_name_the_effects(bench: LensBench) -> None:
 
 
 def test_a_second_picture_to_compare_with(bench: LensBench) -> None:
-    told = Told(bench)
+    recorder = BenchRecorder(bench)
     bench.change(f_number=16.0, exposure_time_s=1.2)
     bench.compare("these settings")
-    told.until_final("b")
+    recorder.until_final("b")
     bench.turn("aperture", -100)
     bench.change(exposure_time_s=0.02)
-    told.until_final()
+    recorder.until_final()
     assert bench_shots.sharpness(codes(bench))[0] < 25
     image = bench.image("b")
     assert bench_shots.sharpness(rc._core.develop(image.pixels, 100))[0] > 35
@@ -452,7 +454,7 @@ def test_a_shot_that_moves_is_saved_as_it_is_seen(bench_of: BenchOf, tmp_path: P
 
 def test_pictures_of_all_kinds(bench: LensBench, tmp_path: Path) -> None:
     bench.noise_codes = 1.0  # JPEG is no good at noise
-    Told(bench).until_shown()
+    BenchRecorder(bench).until_shown()
     image = bench.image()
     for suffix in saving.PICTURE_SUFFIXES:
         (tmp_path / f"picture{suffix}").write_bytes(saving.picture_content(image, f"x{suffix}", "film"))
@@ -478,11 +480,11 @@ def test_the_render_settings_of_the_shot_file_are_kept(bench_of: BenchOf, tmp_pa
     path.write_text(path.read_text().replace("effects = []", 'effects = ["dispersion"]'))
     shot = rc.Shot.load(path)
     bench = bench_of(shot, noise_codes=2.0)
-    told = Told(bench).until_shown()
+    recorder = BenchRecorder(bench).until_shown()
     image = bench.image()
     again = saved_again(bench, path, tmp_path / "saved.toml")
     bench.switch("dispersion", "off")  # to which the illuminant belongs
-    told.until_final()
+    recorder.until_final()
     assert bench.problem is None
     assert bench.image().illuminant is None
     assert saved_again(bench, path, tmp_path / "without.toml").illuminant is None
@@ -501,7 +503,7 @@ def test_clamped_light_is_seen(bench_of: BenchOf, tmp_path: Path) -> None:
     path = bench_shots.write_panels_shot(tmp_path, more="clamp_cd_m2 = 1.0\nmax_bounces = 3\n")
     shot = rc.Shot.load(path)
     bench = bench_of(shot, noise_codes=2.0)
-    Told(bench).until_shown()
+    BenchRecorder(bench).until_shown()
     seen = bench.image().pixels.mean()
     settings = {"spp": 64, "max_bounces": 3, "effects": (), "device": "cpu"}
     means = [rc.render(shot.scene, shot.camera, clamp_cd_m2=c, **settings).pixels.mean() for c in (1.0, 0.0)]

@@ -322,15 +322,15 @@ def test_lenses_are_found_in_the_gallery(bench: BenchPage) -> None:
     assert names_in(gallery) == {"double-gauss-50mm-fast"}  # f/1.45
     bench.test_id("gallery-search").fill("")
     bench.test_id("gallery-f-number").select_option("any")
-    for choice, option, wanted in (
+    for choice, option, expected in (
         ("kind", "zoom", {name for name in rc.lens_names() if rc.Lens.load(name).zoom_positions}),
         ("focal-length", "from 135 mm", {n for n in rc.lens_names() if focal_length_mm(n) >= 135}),
         ("kind", "anamorphic", {"anamorphic-31mm", "anamorphic-65mm", "scope-adapter-50mm"}),
         ("year", "until 1949", OLD),
     ):
         bench.test_id(f"gallery-{choice}").select_option(option)
-        assert names_in(gallery) == wanted
-        assert bench.text("gallery-count") == f"{len(wanted)} of {len(rc.lens_names())}"
+        assert names_in(gallery) == expected
+        assert bench.text("gallery-count") == f"{len(expected)} of {len(rc.lens_names())}"
         bench.test_id(f"gallery-{choice}").select_option("any")
     bench.test_id("gallery-search").fill("no such lens")
     assert gallery.get_by_text("No lens matches these filters.").is_visible()
@@ -734,8 +734,8 @@ def test_a_click_soon_after_a_movement_focuses(bench: BenchPage) -> None:
         time.sleep(wait_s)
         bench.click_picture(u, 0.5)
 
-        def is_near(text: str, wanted: float = distance) -> bool:
-            return abs(float(text.split()[1]) - wanted) < 0.1 * wanted
+        def is_near(text: str, expected: float = distance) -> bool:
+            return abs(float(text.split()[1]) - expected) < 0.1 * expected
 
         bench.until_text("focus-text", is_near)
         assert bench.test_id("problem").count() == bench.test_id("picture-problem").count() == 0

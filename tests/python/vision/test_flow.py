@@ -76,8 +76,8 @@ def test_real_lenses_distort_and_breathe(name: str) -> None:
     flow = rc.optical_flow(WALL, first, second)
     origins, directions = first.ray(middles().reshape(-1, 2))
     on_wall = directions[:, 2] < -0.3
-    way = ((-4 - origins[:, 2]) / directions[:, 2])[:, None]
-    expected = (second.project(origins + way * directions) - middles().reshape(-1, 2))[on_wall]
+    ray_direction = ((-4 - origins[:, 2]) / directions[:, 2])[:, None]
+    expected = (second.project(origins + ray_direction * directions) - middles().reshape(-1, 2))[on_wall]
     found = flow.pixels.reshape(-1, 2)[on_wall]
     known = np.isfinite(expected).all(axis=1) & np.isfinite(found).all(axis=1)
     assert known.mean() > 0.5

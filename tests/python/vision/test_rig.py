@@ -55,9 +55,9 @@ def test_disparity_of_a_far_point_is_baseline_times_focal_length_over_depth() ->
     depth_m = 2.0 + pupil_m[2]  # of the plane in focus, from the pupil
     point = [[0.0, 0.0, -2.0]]
     (left_x, _), (right_x, _) = left.project(point)[0], right.project(point)[0]
-    wanted = BASELINE_M / depth_m * left.camera_matrix[0, 0]
+    required = BASELINE_M / depth_m * left.camera_matrix[0, 0]
     # The film is where the picture is sharpest, some tenths of a percent from where first-order optics has it.
-    assert left_x - right_x == pytest.approx(wanted, rel=3e-3)
+    assert left_x - right_x == pytest.approx(required, rel=3e-3)
 
 
 def test_toe_in_crosses_the_axes_where_the_triangle_says() -> None:

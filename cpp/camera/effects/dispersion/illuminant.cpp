@@ -1,10 +1,11 @@
 #include "illuminant.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <utility>
+
+#include "../../../number_text.hpp"
 
 namespace realcam {
 
@@ -50,20 +51,6 @@ std::string spectrum_text(const std::vector<SpectrumPoint>& points) {
     for (const SpectrumPoint& point : points)
         text += (text.empty() ? "" : ",") + shortest_text(point.wavelength_nm) + ":" + shortest_text(point.power);
     return text;
-}
-
-double number_in(std::string_view text) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size() && !text.empty() && std::isfinite(value)
-               ? value
-               : std::nan("");
-}
-
-std::string shortest_text(double value) {
-    char text[32];
-    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-    return error == std::errc() ? std::string(text, end) : std::string();
 }
 
 Illuminant Illuminant::named(std::string_view name) {

@@ -30,12 +30,6 @@ double spectrum_at(const std::vector<SpectrumPoint>& points, double wavelength_n
 /// Text from which spectrum_points makes these points.
 std::string spectrum_text(const std::vector<SpectrumPoint>& points);
 
-/// Parses a finite number; NaN if the text is not one.
-double number_in(std::string_view text);
-
-/// Shortest decimal text that parses to the same number.
-std::string shortest_text(double value);
-
 /// Spectrum of all light in a picture: a standard illuminant (D65, D50, A, FL2), a single line, or a table.
 class Illuminant {
 public:

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "../../../error.hpp"
+#include "../../../number_text.hpp"
 
 namespace realcam {
 

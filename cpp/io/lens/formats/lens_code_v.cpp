@@ -554,13 +554,10 @@ private:
     /// Sets the medium behind a surface, or makes it a mirror. `text`: REFL, AIR, a glass code or the name of a glass.
     void set_glass(PrescriptionSurface& row, std::string_view text) {
         const std::string name = upper_case(text);
-        if (name == "REFR") return;
+        row.is_mirror = name == "REFL";
+        if (name == "REFR" || row.is_mirror) return;
         if (name == "AIR") {
             row.material = Glass::air();
-            return;
-        }
-        if (name == "REFL") {
-            row.is_mirror = true;
             return;
         }
         if (name == "TIRO" || name == "TIR") return unsupported("total internal reflection (" + name + ")");

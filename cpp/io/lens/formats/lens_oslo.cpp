@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "../../../number_text.hpp"
 #include "../../../optics/lens/paraxial.hpp"
 #include "../../text/printable.hpp"
 #include "../../text/text_number.hpp"
@@ -321,7 +322,8 @@ private:
             row().has_aperture = kind == "CHK";
         }
         const double radius = c.number(i, "the radius of the aperture");
-        if (radius < 0) lines_.fail("the radius of the aperture must be positive");
+        if (!(radius >= 0))
+            lines_.fail("the radius of the aperture is " + number_text(radius) + "; expected 0 (not stated) or more");
         // OSLO gives an object at infinity a radius as large as its distance.
         row().clear_semi_diameter = unit_ * radius > kLongest ? 0 : radius;
     }

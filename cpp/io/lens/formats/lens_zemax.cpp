@@ -48,6 +48,8 @@ Affine<double> frame_of_break(Vec2d decentre, Vec3d tilt_deg, bool is_reversed) 
     return rotation(0, 0, tilt_deg.z) * rotation(0, tilt_deg.y, 0) * rotation(tilt_deg.x, 0, 0) * shift.frame();
 }
 
+constexpr int kLastParameter = 12;  // PARM; extra data have the following numbers in OpticStudio's editor
+
 /// Returns the value of a number; 0 if the map does not have it.
 double value_or_0(const std::map<int, double>& values, int number) {
     const auto found = values.find(number);
@@ -437,21 +439,36 @@ private:
 
     /// Converts type, parameters and extra data, which OpticStudio's manual defines for each surface type. Returns a
     /// noun phrase for a feature that realcam does not model, or an empty string.
-    std::string set_shape(ZemaxSurface& s) const {
+    std::string set_shape(ZemaxSurface& s) {
         SurfaceForm& form = s.row.form;
         const auto parameter = [&](int number) { return value_or_0(s.parameters, number); };
+        // OpticStudio's editor numbers the extra data as parameters, too.
+        for (const auto& [number, value] : s.parameters)
+            if (number > kLastParameter) s.extra_data.try_emplace(number - kLastParameter, value);
+        s.parameters.erase(s.parameters.upper_bound(kLastParameter), s.parameters.end());
         // Number of extra terms, whose coefficients begin at the third extra datum, and the normalization radius.
         const int count = static_cast<int>(std::clamp(value_or_0(s.extra_data, 1), 0.0, 300.0));
         const double radius = value_or_0(s.extra_data, 2) > 0 ? value_or_0(s.extra_data, 2) : 1;
         if (s.type == "STANDARD") return "";  // its parameters have no meaning
-        if (s.type == "EVENASPH" || s.type == "ODDASPHE") {
-            const int step = s.type == "EVENASPH" ? 2 : 1;
+        const auto add_parameter_terms = [&](int step) {
             for (const auto& [number, value] : s.parameters)
                 if (number > 0) add_term(s.row, step * number, value, unit_);
+        };
+        if (s.type == "EVENASPH" || s.type == "ODDASPHE") {
+            add_parameter_terms(s.type == "EVENASPH" ? 2 : 1);
         } else if (s.type == "XASPHERE" || s.type == "XOSPHERE") {
             const int step = s.type == "XASPHERE" ? 2 : 1;
             for (int k = 1; k <= count; ++k)
                 add_term(s.row, step * k, value_or_0(s.extra_data, 2 + k) / std::pow(radius, step * k), unit_);
+            if (count > 0 || !has_parameter_after(s, 0)) {
+                remark_undefined_parameters(s, 0);
+            } else {
+                // The type has no such parameters, but files converted from tables have their coefficients there.
+                add_parameter_terms(step);
+                remark("surface " + std::to_string(s.row.number) + " of type " + s.type +
+                       " has no extended terms; its parameters are read as those of type " +
+                       (step == 2 ? "EVENASPH" : "ODDASPHE"));
+            }
         } else if (s.type == "TOROIDAL") {
             form.base = BaseForm::toroid;
             form.curvature_x = curvature_of(parameter(1), unit_);
@@ -462,7 +479,9 @@ private:
             form.base = BaseForm::biconic;
             form.curvature_x = curvature_of(parameter(1), unit_);
             form.conic_x = parameter(2);
+            remark_undefined_parameters(s, 2);
         } else if (s.type == "XPOLYNOM") {
+            remark_undefined_parameters(s, 0);
             for (int k = 0; k < count; ++k) {
                 const auto [x, y] = xy_powers(k + 1);
                 const double value = value_or_0(s.extra_data, 3 + k);
@@ -486,6 +505,20 @@ private:
             return "a surface of type " + printable(s.type).substr(0, 40);
         }
         return "";
+    }
+
+    /// True if a parameter with a number greater than `last` is not 0.
+    static bool has_parameter_after(const ZemaxSurface& s, int last) {
+        return std::any_of(s.parameters.upper_bound(last), s.parameters.end(),
+                           [](const auto& parameter) { return parameter.second != 0; });
+    }
+
+    /// Warns about parameters that the manual does not define for the type of a surface. `last`: number of the last
+    /// parameter that it defines.
+    void remark_undefined_parameters(const ZemaxSurface& s, int last) {
+        if (has_parameter_after(s, last))
+            remark("surface " + std::to_string(s.row.number) + " has parameters (PARM) that its type " + s.type +
+                   " lacks: they are left out");
     }
 
     /// Converts the decentre and the spider of a surface's aperture.

@@ -134,3 +134,12 @@ TEST_CASE("long files of other programs take time in proportion to their length"
         CHECK(many < 32 * one + 0.5);
     }
 }
+
+TEST_CASE("a glass that follows REFL ends the reflection") {
+    const LensSystem lens = read(kCodeV, "a.seq").lens;
+    const std::string mirror = replaced(kCodeV, "GO\n", "GLA S2 REFL\n");
+    for (const char* commands : {"GLA S2 NBK7_SCHOTT\n", "RMD S2 REFR\n"}) {
+        CAPTURE(commands);
+        CHECK(read(mirror + commands + "GO\n", "a.seq").lens == lens);
+    }
+}

@@ -166,3 +166,9 @@ TEST_CASE("what an OSLO file lacks, or realcam has no model of, is told") {
         CHECK(reading.error.find('\n') == std::string::npos);
     }
 }
+
+TEST_CASE("an OSLO aperture may be left unstated, and is not negative") {
+    CHECK(read(with("AP 6\nNXT\nAIR\nRD", "AP 0\nNXT\nAIR\nRD"), "a.len").error == "");
+    CHECK(read(with("AP 6\nNXT\nAIR\nRD", "AP -3\nNXT\nAIR\nRD"), "a.len")
+              .says("the radius of the aperture is -3; expected 0 (not stated) or more"));
+}

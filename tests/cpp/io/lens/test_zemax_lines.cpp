@@ -208,3 +208,33 @@ TEST_CASE("messages about faces that cross name surfaces and lines of the file")
     const std::string glass = replaced(replaced(text, "0.5875618", "10.17"), "___BLANK 1 0 1.6 50", "N-BK7 0 0");
     CHECK(read(glass, "a.zmx").says("surface 7: its material \"N-BK7\" has no refractive index at 10170 nm"));
 }
+
+TEST_CASE("parameters of an extended asphere are read or named, never lost") {
+    const std::string even = "  TYPE EVENASPH\n  PARM 2 1e-5\n  PARM 3 -2e-8\n",
+                      extended = "  TYPE XASPHERE\n  XDAT 1 3\n  XDAT 2 1\n  XDAT 4 1e-5\n  XDAT 5 -2e-8\n";
+    const auto with_type = [](const std::string& lines) {
+        return read(replaced(singlet("N-BK7 0 0 1.5168 64.17"), "SURF 1\n", "SURF 1\n" + lines), "a.zmx");
+    };
+    const LensSystem asphere = with_type(even).lens;
+    CHECK(asphere.surfaces.at(1).is_asphere());
+    CHECK(with_type(extended).lens == asphere);
+    CHECK_FALSE(with_type(extended).warns_of("XASPHERE"));
+    // OpticStudio's manual numbers the extra data as parameters from 13 on.
+    CHECK(with_type("  TYPE XASPHERE\n  PARM 13 3\n  PARM 14 1\n  PARM 16 1e-5\n  PARM 17 -2e-8\n").lens == asphere);
+    // The manual defines no parameters 1 to 12 for these types. Files converted from tables have coefficients there.
+    const Reading converted = with_type(replaced(even, "EVENASPH", "XASPHERE"));
+    CHECK(converted.lens == asphere);
+    CHECK(
+        converted.warns_of("surface 1 of type XASPHERE has no extended terms; its parameters are read as those of "
+                           "type EVENASPH"));
+    const Reading odd = with_type("  TYPE XOSPHERE\n  PARM 4 1e-5\n");
+    CHECK(odd.lens == with_type("  TYPE ODDASPHE\n  PARM 4 1e-5\n").lens);
+    CHECK(odd.warns_of("as those of type ODDASPHE"));
+    // Beside extended terms they cannot be meant, and neither can they in types without any.
+    const Reading both = with_type(extended + "  PARM 2 1e-3\n");
+    CHECK(both.lens == asphere);
+    CHECK(both.warns_of("surface 1 has parameters (PARM) that its type XASPHERE lacks: they are left out"));
+    CHECK(with_type("  TYPE XPOLYNOM\n  PARM 1 1\n").warns_of("its type XPOLYNOM lacks"));
+    CHECK(with_type("  TYPE BICONICX\n  PARM 1 50\n  PARM 3 1\n").warns_of("its type BICONICX lacks"));
+    CHECK_FALSE(with_type("  TYPE BICONICX\n  PARM 1 50\n  PARM 3 0\n").warns_of("BICONICX"));
+}

@@ -8,6 +8,7 @@
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
+#include "optics/analysis/point_bundle.hpp"
 #include "optics/analysis/psf_pupil.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"
@@ -240,4 +241,33 @@ TEST_CASE("colours add up, and a request that makes no sense is refused") {
     CHECK(contains(refused([](PsfRequest& r) { r.film_distance = 5000; }), "too many for a sum of rays"));
     const LensSystem gauss = io::read_lens("double-gauss-50mm");
     CHECK(contains(message_of([&] { psf_of(gauss, request_for(gauss, 80)); }), "80 deg"));
+}
+
+TEST_CASE("the bounds of a sliver of light contain its whole width") {
+    // Two equal circles that hardly overlap as seen from the field: slivers some mm long, and 0.3 to 0.6 mm wide.
+    constexpr double kRadius = 10, kAway = 50;
+    Surface rim = stop_plane(kAway, kRadius);
+    rim.type = SurfaceType::aperture;
+    LensSystem lens = lens_of({rim, stop_plane(0, kRadius), refracting(200, 3, Glass::constant(1.5), 20),
+                               refracting(0, 0, Glass::air(), 20)});
+    lens.film_distance = 400;
+    for (double overlap = 0.3; overlap < 0.6; overlap += 0.02) {
+        CAPTURE(overlap);
+        const double field = std::atan((2 * kRadius - overlap) / kAway);
+        const PointBundle bundle(lens, lens.wavelength_nm, {field, kInfinity}, lens.film_distance);
+        // No ray passes on the long sides of the bounds. The pointed ends are narrower than the probe's cells.
+        constexpr int kSteps = 100;
+        for (int i = 0; i <= kSteps; ++i) {
+            const double x = bundle.middle.x + (2.0 * i / kSteps - 1) * bundle.reach.x;
+            const PointBundle::Entry at[2] = {{x, bundle.middle.y - bundle.reach.y},
+                                              {x, bundle.middle.y + bundle.reach.y}};
+            bool passes[2];
+            bundle.pass(at, passes);
+            CHECK_FALSE(passes[0]);
+            CHECK_FALSE(passes[1]);
+        }
+        bool passes[1];
+        bundle.pass({bundle.middle}, passes);
+        CHECK(passes[0]);
+    }
 }

@@ -28,12 +28,12 @@ double half_field(const LensSystem& lens) {
 }
 
 /// End point and status of a ray that is traced through the first `count` surfaces only.
-struct Met {
+struct TracedEnd {
     Vec3d at;
     RayStatus status;
 };
 
-Met trace_to(const LensPath<double>& path, int count, const ObjectPoint& object, ObjectPoint::Entry entry) {
+TracedEnd trace_to(const LensPath<double>& path, int count, const ObjectPoint& object, ObjectPoint::Entry entry) {
     LensView<double> view = path.view();
     view.count = count;
     LensRays<double, 1> ray;
@@ -67,7 +67,7 @@ TEST_CASE("every ray that a lens lets pass is the one that is aimed at its place
                     for (int k = 0; k < 30; ++k) {
                         const ObjectPoint::Entry entry{reach * (2 * i - 29) / 29, middle + reach * (2 * k - 29) / 29};
                         if (trace_to(path, count, aim.object, entry).status != RayStatus::ok) continue;
-                        const Met stop = trace_to(path, lens.stop_index() + 1, aim.object, entry);
+                        const TracedEnd stop = trace_to(path, lens.stop_index() + 1, aim.object, entry);
                         const AimedRay found = aim({stop.at.x, stop.at.y});
                         REQUIRE(found.status == RayStatus::ok);
                         worst = std::max(worst, std::hypot(found.entry.x - entry.x, found.entry.y - entry.y) / reach);
@@ -96,7 +96,7 @@ TEST_CASE("an aimed ray meets its place") {
             for (const PupilPoint& p : hexapolar(12)) {
                 const AimedRay ray = aim({radius * p.x, radius * p.y});
                 if (ray.status == RayStatus::no_convergence) continue;
-                const Met stop = trace_to(path, lens.stop_index() + 1, aim.object, ray.entry);
+                const TracedEnd stop = trace_to(path, lens.stop_index() + 1, aim.object, ray.entry);
                 if (ray.status != RayStatus::ok || stop.status != RayStatus::ok) continue;
                 worst = std::max(worst, std::hypot(stop.at.x - radius * p.x, stop.at.y - radius * p.y) / radius);
             }

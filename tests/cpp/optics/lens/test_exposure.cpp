@@ -9,7 +9,9 @@
 #include "doctest/doctest.h"
 #include "math/random.hpp"
 #include "optics/centred_lenses.hpp"
+#include "optics/lens/exposure.hpp"
 #include "pupil_region.hpp"
+#include "traced_ray.hpp"
 
 namespace {
 
@@ -226,4 +228,12 @@ TEST_CASE("blades change neither the light on the axis nor its integral") {
     CHECK(sampled(0, 0) == about(round, 0.005));
     // A film point off the axis at an angle to the blades.
     CHECK(sampled(9, 5) == about(irradiance_over_last_surface(bladed, 9, 5), 0.005));
+}
+
+TEST_CASE("a film before a single mirror has pi sin^2(theta') on the axis") {
+    // A ray at the height r of a paraboloid converges at theta' with tan(theta' / 2) = r / (2 f).
+    for (const double radius : {1.0, 40.0, 90.0}) {
+        const double sine = std::sin(2 * std::atan(radius / 200));
+        CHECK(axis_irradiance(paraboloid(100, radius)) == about(M_PI * sine * sine, 1e-12));
+    }
 }

@@ -183,3 +183,51 @@ TEST_CASE("errors tell two distances apart that are nearly equal") {
     CHECK(contains(message, "0.399999996 m"));
     CHECK(contains(message, "is 0.4 m from it"));
 }
+
+TEST_CASE("light with more than eight edges is focused as a whole") {
+    // A plate whose back has the sag a T9(2 u^2 - 1), u = r / R, bends the light alternately outwards and inwards, and
+    // a rim passes some zones: cos(9 t) with u^2 = (1 + cos t) / 2. The light is five zones, with nine edges.
+    constexpr double kIndex = 1.5, kUnit = 10, kAmplitude = -0.1, kRim = 10, kAway = 100, kStop = 9.5;
+    constexpr double kT9[] = {0, 9, 0, -120, 0, 432, 0, -576, 0, 256};  // by powers of x
+    std::vector<double> powers(10, 0.0);  // of u^2
+    for (int n = 0; n < 10; ++n)
+        for (int k = 0; k <= n; ++k) {
+            double binomial = 1;
+            for (int i = 0; i < k; ++i) binomial = binomial * (n - i) / (i + 1);
+            powers[static_cast<std::size_t>(k)] += kT9[n] * binomial * std::pow(2, k) * ((n - k) % 2 == 0 ? 1 : -1);
+        }
+    Surface wavy = refracting(0, kAway, Glass::air(), 12);
+    for (int k = 1; k < 10; ++k) {
+        const double term = kAmplitude * powers[static_cast<std::size_t>(k)] / std::pow(kUnit, 2 * k);
+        if (k == 1) wavy.curvature = 2 * term;
+        if (k > 1) wavy.aspheric.push_back(term);
+    }
+    wavy.conic = -1;
+    Surface rim = stop_plane(0, kRim);
+    rim.type = SurfaceType::aperture;
+    const LensSystem lens = lens_of({stop_plane(0, kStop), refracting(0, 5, Glass::constant(kIndex), 12), wavy, rim});
+    // Snell's law on the slope of the sag, at a million heights of equal areas.
+    constexpr int kRays = 1 << 20;
+    double cross = 0, square = 0;
+    int edges = 0;
+    bool before = true;
+    for (int i = 0; i < kRays; ++i) {
+        const double r = kStop * std::sqrt((i + 0.5) / kRays), x = 2 * r * r / (kUnit * kUnit) - 1;
+        double value = 0, slope = 0;
+        for (int n = 9; n >= 0; --n) slope = slope * x + value, value = value * x + kT9[n];
+        const double incline = std::atan(kAmplitude * slope * 4 * r / (kUnit * kUnit));
+        const double refracted = std::asin(kIndex * std::sin(incline));  // NaN: total reflection
+        const double m = std::tan(refracted - incline);
+        // The vertex of the sag is the point of the axis, where T9(-1) = -1.
+        const double height = r + m * (kAway - kAmplitude * (value + 1));
+        const bool passes = std::fabs(height) <= kRim;
+        edges += passes != before;
+        before = passes;
+        if (!passes) continue;
+        cross += height * m;
+        square += m * m;
+    }
+    CHECK(edges > 8);
+    // The zones' edges lie between two of a million heights: some 1e-6 of the light, times their number.
+    CHECK(best_focus_distance(lens, lens.wavelength_nm, kInfinity) == about(-cross / square, 1e-4));
+}

@@ -161,18 +161,18 @@ TEST_CASE("a pupil that has changed much is the same as without the one before")
 }
 
 TEST_CASE("samples are even over the region: weights times counts are areas") {
-    struct Place {
+    struct FilmPoint {
         const char* name;
         double share_of_image_circle, azimuth;
     };
-    for (const Place& place : {Place{"double-gauss-50mm", 0.0, 0.0}, Place{"double-gauss-50mm", 0.71, 0.4},
-                               Place{"double-gauss-50mm", 0.99, 2.0}, Place{"fisheye-10mm", 0.9, 4.0},
-                               Place{"mirror-telephoto-500mm", 0.3, -1.0}, Place{"phone-4mm", 0.5, 3.1}}) {
-        CAPTURE(std::string(place.name));
-        CAPTURE(place.share_of_image_circle);
-        const LensSystem lens = io::read_lens(place.name);
+    for (const FilmPoint& point : {FilmPoint{"double-gauss-50mm", 0.0, 0.0}, FilmPoint{"double-gauss-50mm", 0.71, 0.4},
+                                   FilmPoint{"double-gauss-50mm", 0.99, 2.0}, FilmPoint{"fisheye-10mm", 0.9, 4.0},
+                                   FilmPoint{"mirror-telephoto-500mm", 0.3, -1.0}, FilmPoint{"phone-4mm", 0.5, 3.1}}) {
+        CAPTURE(std::string(point.name));
+        CAPTURE(point.share_of_image_circle);
+        const LensSystem lens = io::read_lens(point.name);
         const Pupil pupil(lens, half_diagonal(lens));
-        const double radius = place.share_of_image_circle * pupil.image_radius();
+        const double radius = point.share_of_image_circle * pupil.image_radius();
         const PupilRegion region(pupil.view(), radius);
 
         // Cells of a grid over the box in direction cosines; the area that the region has in each, by 64 x 64
@@ -192,7 +192,7 @@ TEST_CASE("samples are even over the region: weights times counts are areas") {
         std::mt19937 engine(41);
         const auto unit = [&] { return static_cast<float>(engine() >> 8) * 0x1p-24f; };
         double total = 0, squares = 0;
-        const double cosine = std::cos(place.azimuth), sine = std::sin(place.azimuth);
+        const double cosine = std::cos(point.azimuth), sine = std::sin(point.azimuth);
         for (int i = 0; i < kSamples; ++i) {
             const PupilSample s = sample_pupil(pupil.view(), static_cast<float>(radius * cosine),
                                                static_cast<float>(radius * sine), unit(), unit());

@@ -69,7 +69,7 @@ TEST_CASE("sample_pupil follows pupil_pdf, from the axis to the edge of the imag
         tests.add(in_direction_cosines(
             view, x, y, [&](Vec2f u) { return sample_pupil(view, x, y, u.x, u.y).direction; }, seed++));
     }
-    // 1.3e-3 of the density lies in bins in which 700 points of a quadrature rule meet an edge.
+    // 1.3e-3 of the density lies in bins that an edge cuts, which limits the rule of 70 x 70 points in each bin.
     tests.hold(3e-3);
 
     const LensSystem lens = lens_at(kPoints[1]);

@@ -228,9 +228,9 @@ TEST_CASE("what needs an axis of revolution says which surface has none") {
     lens.surfaces[1].placement.tilt_deg.x = 1;
     CHECK_FALSE(lens.is_rotational());
     CHECK(message_of([&] { trace_paraxial(lens, lens.wavelength_nm, {1, 0}, 0, 3); }) ==
-          "first-order data needs a centred lens of revolution; surface 2 is tilted");
+          "first-order data needs a rotationally symmetric lens; surface 2 is tilted");
     CHECK(message_of([&] { reversed(lens); }) ==
-          "turning a lens round needs a centred lens of revolution; surface 2 is tilted");
+          "turning a lens round needs a rotationally symmetric lens; surface 2 is tilted");
     lens.surfaces[1].placement = {{0, 1e10, 0}, {0, 0, 0}, false};
     CHECK(message_of<LensFileError>([&] { validate(lens); }) ==
           "surface 2: the decentre must be three lengths of at most 1e9 mm");

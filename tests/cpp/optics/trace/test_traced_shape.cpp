@@ -11,7 +11,7 @@ using namespace realcam;
 namespace {
 
 /// Shape of a surface computed from scratch, in a new thread, because each thread starts with an empty cache.
-TracedShape<double> made_anew(const Surface& surface) {
+TracedShape<double> computed_from_scratch(const Surface& surface) {
     TracedShape<double> shape;
     std::thread([&] { shape = traced_shape<double>(surface); }).join();
     return shape;
@@ -58,7 +58,7 @@ TEST_CASE("a surface that differs in anything that shapes it is made ready anew"
         surfaces.back().curvature = 1e-4 * i;
     }
     std::vector<TracedShape<double>> expected;
-    for (const Surface& surface : surfaces) expected.push_back(made_anew(surface));
+    for (const Surface& surface : surfaces) expected.push_back(computed_from_scratch(surface));
     for (int turn = 0; turn < 2; ++turn)
         for (std::size_t i = 0; i < surfaces.size(); ++i) {
             CAPTURE(i);

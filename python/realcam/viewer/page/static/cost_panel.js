@@ -82,7 +82,11 @@ export default {
   mounted() {
     this.stream = streamAt(this.path);
     this.ends = [
-      this.stream.on("plan", ({ rows, note, states }) => { this.all = rows; this.note = note; this.states = states; }),
+      this.stream.on("plan", ({ rows, note, states }) => {
+        this.all = rows.map((row) => ({ ...row, size: row.size ?? Infinity })); // JSON has no infinity
+        this.note = note;
+        this.states = states;
+      }),
       this.stream.on("levels", ({ levels, note }) => { this.levels = levels; this.levelsNote = note; }),
       this.stream.on("frame", ({ header }) => this.addFrame(header)),
     ];
@@ -115,7 +119,7 @@ export default {
     label_of: (name) => name[0].toUpperCase() + name.slice(1).replaceAll("_", " "),
     /// Sentence about the size of an effect in this picture.
     size(name) {
-      const row = this.rows[name], short = (x) => (x === null ? "∞" : String(Number(x.toPrecision(2)))); // JSON has no infinity
+      const row = this.rows[name], short = (x) => (x === Infinity ? "∞" : String(Number(x.toPrecision(2))));
       if (!row) return "";
       const unit = row.unit === "px" ? "pixel" : "grey level", size = short(row.size);
       const limit = `below ${short(row.threshold)} it would be invisible`;

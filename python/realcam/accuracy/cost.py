@@ -16,9 +16,9 @@ from ..number_text import counted
 from ..planning import resolved
 from ..render import ProgressCallback, render
 from .errors import Codes, codes, flip, mean_square
-from .measurements import Measured, Measurements, Rung
+from .levels import Level, known_effects, levels_of, sampling_strategies
+from .measurements import LevelMeasurements, Measured, Measurements
 from .report import text_of
-from .rungs import Level, known_effects, levels_of, sampling_strategies
 
 
 class AccuracyCost(Measurements):
@@ -93,20 +93,20 @@ def accuracy_cost(
     if samplings:
         without_effects = Reference(scene, camera, (), reference_spp, seed, settings)
         pairs += [(level, without_effects) for level in sampling_strategies()]
-    done: list[tuple[bool, Rung]] = []
+    done: list[tuple[bool, LevelMeasurements]] = []
     missing = [level.name for level, _ in pairs]
     impossible: list[str] = []
     try:
         for number, (level, against) in enumerate(pairs):
             report((1 + number) / (1 + len(pairs)))
             try:
-                rung = _measure(level, scene, camera, against, max_spp, seed, settings)
+                measurements = _measure(level, scene, camera, against, max_spp, seed, settings)
             except InputError:
                 # The reference was rendered, so only this level is impossible. An ideal lens images no point at 90
                 # degrees to its axis, a GPU has no double precision, and an exit pupil may lie behind the film.
                 impossible.append(level.name)
             else:
-                done.append((number < level_count, rung))
+                done.append((number < level_count, measurements))
             missing.remove(level.name)
     except KeyboardInterrupt:
         pass
@@ -115,8 +115,8 @@ def accuracy_cost(
         size=small,
         reference=", ".join(("full lens", *reference_effects)) + f", {counted(2 * reference_spp, 'sample')}",
         reference_noise_codes=math.sqrt(reference.variance),
-        rungs=tuple(rung for is_level, rung in done if is_level),
-        samplings=tuple(rung for is_level, rung in done if not is_level),
+        levels=tuple(measurements for is_level, measurements in done if is_level),
+        samplings=tuple(measurements for is_level, measurements in done if not is_level),
         missing=tuple(missing),
         impossible=tuple(impossible),
         reference_codes=reference.codes,
@@ -157,7 +157,7 @@ def _measure(
     max_spp: int,
     seed: int,
     settings: dict[str, object],
-) -> Rung:
+) -> LevelMeasurements:
     level.image(scene, camera, spp=1, seed=seed, **settings)  # so that the times exclude the building of caches
     pictures = []
     spp = 1
@@ -182,7 +182,7 @@ def _measure(
         bias2 = 0.0
     stats = image.stats
     total_seconds = max(stats.lens_seconds + stats.scene_seconds + stats.other_seconds, 1e-12)
-    return Rung(
+    return LevelMeasurements(
         name=level.name,
         model=level.model,
         effects=level.effects,
