@@ -136,7 +136,15 @@ void resolve_keys(ShotRequest& request) {
     if (zooms && request.f_number) request.keys.front().f_number = std::exchange(request.f_number, {});
 }
 
-Camera camera_of(const ShotRequest& request) {
+CalibratedCameraMaker& calibrated_camera_maker() {
+    static CalibratedCameraMaker maker;
+    return maker;
+}
+
+namespace {
+
+/// Camera with lens and film of a request.
+Camera lens_camera(const ShotRequest& request) {
     Camera camera;
     camera.lens = request.lens_in_memory ? *request.lens_in_memory : io::read_lens(request.lens, request.lens_options);
     camera.lens = with_shot_rings(request, camera.lens);
@@ -144,6 +152,44 @@ Camera camera_of(const ShotRequest& request) {
     if (request.film_is_of_other_lens)
         if (const std::string notice = film_notice(camera.lens, camera.film); !notice.empty()) warn(request, notice);
     camera.film.shift_mm = {request.film_shift_mm[0], request.film_shift_mm[1]};
+    return camera;
+}
+
+/// Camera with lens, film and geometry of the calibration of a request.
+Camera calibrated_camera(const ShotRequest& request) {
+    if (!calibrated_camera_maker())
+        throw InputError("calibrations are read by the Python package of realcam; this program cannot read " +
+                         request.calibration.file);
+    if (request.film_shift_mm[0] != 0 || request.film_shift_mm[1] != 0)
+        throw InputError("film_shift_mm and calibration exclude each other: the principal point shifts the film");
+    std::optional<LensSystem> lens = request.lens_in_memory;
+    if (!lens && request.lens != "auto")
+        lens = with_shot_rings(request, io::read_lens(request.lens, request.lens_options));
+    const std::optional<double> width_mm = request.film_mm ? std::optional((*request.film_mm)[0]) : std::nullopt;
+    Camera camera = calibrated_camera_maker()(request.calibration, lens, width_mm, request.f_number);
+    if (!lens) camera.lens = with_rings(camera.lens, blades_of(request));
+    Film& film = camera.film;
+    if (request.film_mm && std::fabs((*request.film_mm)[1] / film.height_mm - 1) > 1e-3)
+        throw InputError("the film's height is " + number_text((*request.film_mm)[1], 6) +
+                         " mm; expected that of the calibration at this width, " + number_text(film.height_mm, 6) +
+                         " mm");
+    if (request.resolution) {
+        const auto [width, height] = *request.resolution;
+        if (std::fabs(static_cast<double>(width) * film.height - static_cast<double>(height) * film.width) >
+            std::max(film.width, film.height))
+            throw InputError("the resolution is " + std::to_string(width) + " x " + std::to_string(height) +
+                             "; expected the aspect ratio of the calibration, " + std::to_string(film.width) + " x " +
+                             std::to_string(film.height));
+        film.width = width;
+        film.height = height;
+    }
+    return camera;
+}
+
+}  // namespace
+
+Camera camera_of(const ShotRequest& request) {
+    Camera camera = request.calibration.file.empty() ? lens_camera(request) : calibrated_camera(request);
     camera.model = request.model;
     camera.iso = request.iso;
     camera.shutter = request.shutter;

@@ -132,6 +132,9 @@ private:
     void check(ShotRequest& shot) const {
         exclude("environment", {"environment_cd_m2"});
         exclude("zoom", {"focal_length_mm"});
+        for (const char* const key : {"calibration_camera", "vignetting"})
+            if (table_.find(key) && shot.calibration.file.empty())
+                table_.fail(table_.shown(key) + " belongs to a calibration, and there is none", table_.find(key));
         exclude("camera", {"position_m", "look_at_m", "pose"});
         exclude("pose", {"position_m", "look_at_m"});
         if (!(shot.scale > 0))

@@ -77,6 +77,19 @@ void to_resolution(Table t, Key key, Request r) {
     r.resolution = {t.whole(key.name, v[0]), t.whole(key.name, v[1])};
 }
 
+/// Reads the file of a calibration, or a table [calibration] with its values.
+void to_calibration(Table t, Key key, Request r) {
+    const toml::node* node = t.find(key.name);
+    if (!node->is_table()) {
+        r.calibration.file = t.path(key.name);
+        return;
+    }
+    const ShotTable table(*node->as_table(), t.file());
+    table.allow({"file", "camera", "vignetting"});
+    if (!table.find("file")) table.fail("\"file\" is missing: a calibration");
+    r.calibration = {table.path("file"), table.name("camera"), table.path("vignetting")};
+}
+
 /// Reads a radiance or the name of a picture. On the command line, a text that is neither a number nor the name of an
 /// existing file is an error, because it may be a misspelt number.
 void to_environment(Table t, Key key, Request r) {
@@ -120,6 +133,7 @@ constexpr const char *kCamera = "Camera", *kScene = "Scene", *kNumber = "a numbe
 using R = ShotRequest;
 using K = CameraKey;
 using V = ViewRequest;
+using C = CalibrationRequest;
 
 /// Returns the row with further sentences of its description.
 ShotKey with_details(ShotKey key, const char* details) {
@@ -146,6 +160,15 @@ std::vector<ShotKey> camera_and_scene_keys() {
         {"film_shift_mm", "--film-shift", kCamera, "X,Y", two_numbers, "two lengths in mm, such as 0,8",
          "Offset of the film's centre from the optical axis, in mm to the right and up in the picture", "0,0", {},
          to_pair<&R::film_shift_mm>, to_film_shift_of_keyframe},
+        with_details({"calibration", "--calibration", kCamera, "FILE", text, "a calibration file, or a table",
+         "Calibration whose geometry the camera has, with the light of the lens; --lens auto chooses one",
+         "the geometry of the lens", {"film_shift_mm"}, to_calibration},
+         "In a shot file also a table [calibration] with file, camera and vignetting; see docs/calibration.md."),
+        {"calibration_camera", "--calibration-camera", kCamera, "NAME", text, "the name of a camera of the calibration",
+         "One of several cameras of the calibration", "the only one", {}, to_text<&R::calibration, &C::camera>},
+        {"vignetting", "--vignetting", kCamera, "FILE", text, "a flat field, or a lensfun database",
+         "Measured falloff in place of the lens's, for a calibrated camera", "the lens's", {},
+         to_file<&R::calibration, &C::vignetting>},
         {"resolution", "--resolution", kCamera, "WxH", size, "a width and a height in pixels, such as 960x640",
          "Number of pixels", "960 along the longer side", {}, to_resolution},
         with_details({"camera", "--camera", kCamera, "NAME", text, "the name of a camera of the scene, or none,",

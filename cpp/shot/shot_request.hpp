@@ -11,6 +11,7 @@
 #include "../render/framing/default_view.hpp"
 #include "../render/settings/render_settings.hpp"
 #include "../scene/scene.hpp"
+#include "calibrated_camera.hpp"
 #include "scene_request.hpp"
 
 namespace realcam::shot {
@@ -60,6 +61,7 @@ struct ShotRequest : PictureRequest {
     std::optional<double> blade_rounding, blade_rotation_deg;
     std::optional<std::array<double, 2>> film_mm;  ///< width and height
     std::array<double, 2> film_shift_mm = {0, 0};  ///< see Film
+    CalibrationRequest calibration;
     std::optional<std::array<int, 2>> resolution;  ///< columns and rows of pixels
     ViewRequest view;
     std::vector<PoseKey> motion;  ///< motion of the camera, instead of the position in `view`; empty: it does not move

@@ -309,6 +309,21 @@ Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std
     return py::make_tuple(std::move(fields), request.sampling == shot::Sampling::unspecified);
 }
 
+/// See CalibratedCameraMaker. Called without the GIL.
+Camera calibrated_camera(const shot::CalibrationRequest& request, const std::optional<LensSystem>& lens,
+                         std::optional<double> film_width_mm, std::optional<double> f_number) {
+    const py::gil_scoped_acquire locked;
+    try {
+        return py::module_::import("realcam.calibration.camera")
+            .attr("camera_of_shot")(request.file, request.camera, request.vignetting, lens, film_width_mm, f_number)
+            .cast<Camera>();
+    } catch (py::error_already_set& error) {
+        // Mistakes of the user are reported like those of the shot; all other errors pass through.
+        if (!error.matches(py::module_::import("realcam").attr("RealcamError"))) throw;
+        throw InputError(py::str(error.value()).cast<std::string>());
+    }
+}
+
 /// Returns the metadata of an image file, text by name.
 Typed<"dict[str, str]", py::dict> metadata(const Camera& camera, const RenderSettings& settings, int spp,
                                            std::uint32_t seed, const std::string& plan, const std::string& denoiser) {
@@ -325,6 +340,7 @@ Typed<"dict[str, str]", py::dict> metadata(const Camera& camera, const RenderSet
 }  // namespace
 
 void bind_shot(py::module_& m) {
+    shot::calibrated_camera_maker() = &calibrated_camera;
     bind_key(m);
     bind_shake(m);
     bind_shot_keys(m);

@@ -76,3 +76,23 @@ def _posed(camera: Camera, scene_from_camera: ArrayLike) -> Camera:
     at_origin = camera.replace(position=(0, 0, 0), look_at=(0, 0, -1), up=(0, 1, 0))
     position = centre - axes @ np.array(at_origin.entrance_pupil_position_m)
     return camera.replace(position=tuple(position), look_at=tuple(position + forward), up=tuple(-down))
+
+
+def camera_of_shot(
+    file: str, camera: str, vignetting: str, lens: Lens | None, film_width_mm: float | None, f_number: float | None
+) -> Camera:
+    """Returns the camera of a shot with a calibration; the extension module calls this.
+
+    camera, vignetting: empty if not stated. lens: None: the bundled one that resembles the calibration most.
+    Raises RealcamError.
+    """
+    from ..calibration import Calibration  # which imports this module
+
+    calibration = Calibration.load(file, camera or None)
+    measured = Vignetting.load(vignetting) if vignetting else None
+    return calibration.camera(
+        "auto" if lens is None else lens,
+        film_width_mm=film_width_mm,
+        f_number=f_number if lens is None else None,
+        vignetting=measured,
+    )
