@@ -67,16 +67,6 @@ class _CudaArray(Protocol):
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]: ...
 
-class _Picture(TypedDict):
-    pixels: NDArray[np.float32]
-    depth: NDArray[np.float32]
-    spp: int
-    stats: RenderStats
-    layers: dict[str, NDArray[np.float32] | NDArray[np.uint32]]
-    object_names: tuple[str, ...]
-    material_names: tuple[str, ...]
-    shortfall: str
-
 class _Shot(TypedDict):
     scene: Scene
     camera: Camera

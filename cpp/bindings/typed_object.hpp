@@ -33,7 +33,7 @@ private:
     static constexpr pybind11::object::stolen_t stolen{};
 };
 
-// Annotations may use the type aliases of the stub (tools/make_stub.py), such as _Picture.
+// Annotations may use the type aliases of the stub (tools/make_stub.py), such as _Shot.
 
 using PathLike = Typed<"str | os.PathLike[str]">;
 /// Medium of a lens, see glass_from in bindings.hpp.
@@ -49,8 +49,6 @@ using ArrayLike = Typed<"ArrayLike">;
 using OptionalArrayLike = Typed<"ArrayLike | None">;
 /// Terms of a surface's sag, its aperture, or an obscuration, as a dict; see change_form in lens/surface_changes.hpp.
 using FormDict = Typed<"dict[str, Any]", pybind11::dict>;
-/// Attributes of a Python Image by name, see picture_from in pictures/picture.hpp.
-using PictureFields = Typed<"_Picture", pybind11::dict>;
 
 }  // namespace realcam::bindings
 

@@ -1,6 +1,7 @@
 #include "scene_checks.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <set>
 #include <sstream>
 
@@ -41,6 +42,35 @@ std::string coordinates_error(Vec3d p) {
 }
 
 namespace {
+
+/// Returns why a texture is invalid; empty if it is valid. Throws Cancelled if `checkpoint` does.
+std::string texture_error(const Texture& t, Checkpoint& checkpoint) {
+    const std::size_t texels =
+        static_cast<std::size_t>(std::max(t.width, 0)) * static_cast<std::size_t>(std::max(t.height, 0));
+    if (texels == 0 || (t.rgba.empty() ? t.linear_rgba.size() : t.rgba.size()) != 4 * texels)
+        return "must hold width x height x 4 numbers";
+    checkpoint.pass(t.linear_rgba.size());
+    for (const float v : t.linear_rgba)
+        if (!(v >= 0 && std::isfinite(v))) return "must hold finite numbers, none below 0";
+    return "";
+}
+
+/// Throws InputError if the pose or the field of a scene's camera is invalid.
+void check_camera(const SceneCamera& camera) {
+    const auto& [x, y, z, origin] = camera.scene_from_camera;
+    const bool is_posed = is_finite(x) && is_finite(y) && is_finite(z) && is_finite(origin) &&
+                          (!camera.motion || motion_error(*camera.motion).empty());
+    if (!is_posed || !(camera.vertical_field_rad >= 0 && camera.vertical_field_rad < std::numbers::pi))
+        throw InputError("a camera of the scene needs a valid pose, and a field of view from 0 to 180 degrees");
+}
+
+/// Throws InputError if an instance is a part of one that does not come before it.
+void check_parent(const Assembly& scene, std::size_t instance) {
+    const std::ptrdiff_t parent = scene.instances[instance].part_of;
+    if (parent < Instance::kNoParentInstance || parent >= static_cast<std::ptrdiff_t>(instance))
+        throw InputError(label(scene, instance) + " is a part of instance " + std::to_string(parent) +
+                         "; expected an instance before it in the list");
+}
 
 /// Checks one Scene; see validate.
 class Checker {
@@ -167,14 +197,8 @@ private:
 
     void check_textures() const {
         for (std::size_t i = 0; i < scene_.textures.size(); ++i) {
-            const Texture& t = scene_.textures[i];
-            const std::size_t texels =
-                static_cast<std::size_t>(std::max(t.width, 0)) * static_cast<std::size_t>(std::max(t.height, 0));
-            require(texels > 0 && (t.rgba.empty() ? t.linear_rgba.size() : t.rgba.size()) == 4 * texels, "texture", i,
-                    "expected width x height x 4 numbers");
-            checkpoint_.pass(t.linear_rgba.size());
-            for (const float v : t.linear_rgba)
-                require(v >= 0 && std::isfinite(v), "texture", i, "must hold finite numbers, none below 0");
+            const std::string why = texture_error(scene_.textures[i], checkpoint_);
+            require(why.empty(), "texture", i, why);
         }
     }
 
@@ -227,6 +251,11 @@ void validate(const Scene& scene, const std::string& file, bool may_be_empty) {
     validate(scene, file, may_be_empty, never_stops);
 }
 
+void validate(const Texture& texture) {
+    Checkpoint never_stops;
+    if (const std::string why = texture_error(texture, never_stops); !why.empty()) throw InputError("a texture " + why);
+}
+
 void SceneChecks::check(const Assembly& scene, const std::string& file, const KeepGoing& keep_going) {
     Checkpoint checkpoint(keep_going);
     try {
@@ -256,8 +285,10 @@ void SceneChecks::check_parts(const Assembly& scene, const std::string& file, Ch
         checkpoint.pass();
         const Scene* const object = scene.instances[i].object.get();
         if (!object) throw InputError(label(scene, i) + " has no object");
+        check_parent(scene, i);
         if (checked.insert(object).second) validate(*object, file, true, checkpoint);
     }
+    for (const SceneCamera& camera : scene.cameras) check_camera(camera);
 }
 
 bool is_degenerate(const Scene& scene, const Triangle& triangle) {

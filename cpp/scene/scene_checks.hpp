@@ -29,11 +29,15 @@ void validate(const Scene& scene, const std::string& file, bool may_be_empty, Ch
 /// The same without a way to stop it.
 void validate(const Scene& scene, const std::string& file = {}, bool may_be_empty = false);
 
+/// Throws InputError if a texture has the wrong number of texels, or texels that are negative or not finite.
+void validate(const Texture& texture);
+
 /// Incremental validation of successive scenes: static geometry, objects and transforms, skipping all parts of the
 /// previous scene, which it keeps in memory.
 class SceneChecks {
 public:
-    /// Throws like validate(Scene), InputError for an invalid instance, and Cancelled if `keep_going` returns false.
+    /// Throws like validate(Scene), InputError for an invalid instance or camera, and Cancelled if `keep_going` returns
+    /// false.
     void check(const Assembly& scene, const std::string& file = {}, const KeepGoing& keep_going = {});
 
 private:

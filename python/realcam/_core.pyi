@@ -27,16 +27,6 @@ class _CudaArray(Protocol):
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]: ...
 
-class _Picture(TypedDict):
-    pixels: NDArray[np.float32]
-    depth: NDArray[np.float32]
-    spp: int
-    stats: RenderStats
-    layers: dict[str, NDArray[np.float32] | NDArray[np.uint32]]
-    object_names: tuple[str, ...]
-    material_names: tuple[str, ...]
-    shortfall: str
-
 class _Shot(TypedDict):
     scene: Scene
     camera: Camera
@@ -3266,10 +3256,11 @@ def _render(
     device: str,
     progress: Callable[[float], bool | None] | None,
     keeps_stopped: bool,
-) -> _Picture:
+    plan: str,
+) -> Image:
     """
-    Internal: use realcam.render. Returns the fields of an Image. keeps_stopped: if progress stops rendering,
-    return the picture of the samples taken so far instead of raising Cancelled.
+    Internal: use realcam.render. keeps_stopped: if progress stops rendering, return the picture of the samples
+    taken so far instead of raising Cancelled. plan: summary of the plan.
     """
 
 def _effect_notices(lens: Lens, settings: RenderSettings) -> list[str]:
@@ -3759,13 +3750,6 @@ def _read_shot(
     replace those of the file unless None. denoises: True if the picture will be denoised. device: meters the exposure.
     """
 
-def _metadata(
-    camera: Camera, settings: RenderSettings, spp: int, seed: int, plan: str, denoiser: str
-) -> dict[str, str]:
-    """
-    Internal. Returns the metadata of an image file, text by name.
-    """
-
 @final
 class LiveFrame:
     """
@@ -3798,9 +3782,9 @@ class _LiveView:
         """
         Cancels frames in progress, which then raise Cancelled.
         """
-    def image(self, camera: Camera, settings: RenderSettings) -> _Picture:
+    def image(self, camera: Camera, settings: RenderSettings) -> Image:
         """
-        Returns the fields of an Image of the last frame's camera and settings, with layers.
+        Returns an Image of the last frame's camera and settings, with layers.
         """
     def picture(self) -> tuple[DeviceArray | NDArray[np.float32], DeviceArray | NDArray[np.float32]]:
         """
@@ -3892,19 +3876,19 @@ class _Session:
         """
         Ends the running call of another thread, which raises Cancelled.
         """
+    def image(self, plan: str) -> Image:
+        """
+        Returns an Image of all samples so far.
+        """
+    def image_of(
+        self, pixels: ArrayLike, layers: ArrayLike | None, splats: list[_Splats], stats: Mapping[str, float], plan: str
+    ) -> Image:
+        """
+        Returns an Image of a film that was accumulated from parts.
+        """
     def layer_sums_of_region(self, region: tuple[int, int, int, int], first: int, count: int) -> NDArray[np.void]:
         """
         Returns layer sums of a region, of the first surfaces that these samples hit.
-        """
-    def picture(self) -> _Picture:
-        """
-        Returns the fields of an Image of all samples so far.
-        """
-    def picture_of(
-        self, pixels: ArrayLike, layers: ArrayLike | None, splats: list[_Splats], stats: Mapping[str, float]
-    ) -> _Picture:
-        """
-        Returns the fields of an Image of a film that was accumulated from parts.
         """
     def sample_region(
         self, region: tuple[int, int, int, int], first: int, count: int, counts: ArrayLike | None = None
@@ -4261,6 +4245,11 @@ def _read_picture(path: bytes) -> tuple[NDArray[np.float32], list[str]]:
 def _write_picture(path: bytes, image: object, film_tone: bool) -> None:
     """
     Internal: use Image.save. film_tone: True for the tone curve "film", False for "linear".
+    """
+
+def _metadata(image: Image) -> dict[str, str]:
+    """
+    Internal: use Image.metadata. Returns the metadata of picture files, text by name.
     """
 
 def _write_codes(path: bytes, codes: ArrayLike, entries: Sequence[tuple[str, str]]) -> None:

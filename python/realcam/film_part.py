@@ -14,7 +14,7 @@ import numpy as np
 from . import _core
 from ._core import InputError
 from .archive import packed, read_archive, write_archive
-from .pickling import same_arrays, set_checked_state
+from .pickling import PickledByFields, same_arrays
 
 if TYPE_CHECKING:
     from ._core import RenderSettings, _Region, _Splats
@@ -23,7 +23,7 @@ FORMAT = 3  # of the files of parts
 
 
 @dataclass(frozen=True, eq=False)
-class FilmPart:
+class FilmPart(PickledByFields):
     """Sums over some samples of a region of the film: Session.expose returns them, Session.image_of adds them up.
 
     region: column and row of its first pixel, width and height; None: the whole film, for splatted light.
@@ -54,13 +54,12 @@ class FilmPart:
         for number in (self.first, self.spp):
             if isinstance(number, bool) or not isinstance(number, int | np.integer) or not 0 <= number < 1 << 32:
                 raise InputError("first and spp of a part must be whole numbers of 0 or more")
-        if not all(isinstance(n, float | int) and 0 <= n < math.inf for n in self.stats.values()):
+        if not all(
+            isinstance(name, str) and isinstance(n, float | int) and 0 <= n < math.inf for name, n in self.stats.items()
+        ):
             raise InputError("the stats of a part must be finite numbers of 0 or more")
         if not all(_is_splat(light) for light in self.splats):
             raise InputError("the splats of a part must be arrays (films, H, W, 3) of int64 for each kind of light")
-
-    def __setstate__(self, state: Any) -> None:
-        set_checked_state(self, state, lambda made: made.packed())
 
     def __eq__(self, other: object) -> bool:
         """Returns True if regions, samples and sums are equal; stats are not compared."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
@@ -13,12 +12,12 @@ from . import _core, denoiser, notebook
 from ._core import Camera, InputError, RenderSettings, RenderStats
 from .files import system_name
 from .number_text import counted
-from .pickling import set_checked_state
+from .pickling import PickledByFields
 from .settings import setting
 
 
 @dataclass(frozen=True, eq=False)
-class Image:
+class Image(PickledByFields):
     """A picture: the film's exposure, without sensor noise, and how it was taken.
 
     pixels: (H, W, 3) float32, exposure in lux seconds, linear Rec. 709, row 0 at the top.
@@ -68,9 +67,7 @@ class Image:
         for names in (self.object_names, self.material_names):
             if not isinstance(names, tuple) or not all(isinstance(name, str) for name in names):
                 raise InputError("object_names and material_names must be tuples of texts")
-
-    def __setstate__(self, state: Any) -> None:
-        set_checked_state(self, state, type(self).metadata)
+        self.metadata()  # raises InputError for other attributes of the wrong type
 
     def __eq__(self, other: object) -> bool:
         """Returns True if pixels, layers, camera and metadata are equal; stats are not compared."""
@@ -136,7 +133,4 @@ class Image:
 
     def metadata(self) -> dict[str, str]:
         """Returns the metadata of picture files: values by their names "realcam:..."."""
-        entries: dict[str, str] = _core._metadata(
-            self.camera, self.settings, self.spp, self.seed, self.plan, self.denoiser
-        )
-        return entries
+        return _core._metadata(self)

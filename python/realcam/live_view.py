@@ -86,9 +86,7 @@ class LiveView:
         if self._last is None:
             raise InputError("there is no picture yet; shoot() takes one")
         camera, settings = self._last
-        settings = settings.with_(layers=layers)
-        picture = self._core.image(camera, settings)
-        return Image(**picture, camera=camera, seed=settings.seed, settings=settings)
+        return self._core.image(camera, settings.with_(layers=layers))
 
     def cancel(self) -> None:
         """Cancels all frames in flight within some milliseconds, from any thread.

@@ -1,45 +1,49 @@
-"""Unpickling of realcam's objects.
+"""Pickling of realcam's objects: the arguments of their constructors, which check them.
 
-Pickles are untrusted input: their state passes the same checks as a new object, and invalid state raises InputError.
+Pickles are untrusted input: invalid arguments raise InputError, and classes other than realcam's values are refused.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core
 
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
 FORMAT = _core._STATE_FORMAT
 
 
-def restored(kind: str, state_format: int, version: str, state: Any) -> Any:
-    """Restores a pickled object of the extension.
+def restored(kind: str | type, state_format: int, version: str, state: Any) -> Any:
+    """Restores a pickled object.
 
-    kind: name of its class. state_format, version: of the realcam that pickled it. Raises InputError if the state is
-    damaged, or if it is in the format of another version of realcam.
+    kind: its class, or the class's name in the extension. state_format, version: of the realcam that pickled it.
+    state: arguments of its constructor. Raises InputError if the state is damaged, or if it is in the format of another
+    version of realcam.
     """
     made_by = version if isinstance(version, str) and len(version) <= 20 and version.isprintable() else "?"
-    type_ = getattr(_core, kind, None) if isinstance(kind, str) else None
+    type_ = getattr(_core, kind, None) if isinstance(kind, str) else kind
     if not isinstance(type_, type) or not hasattr(type_, "_restored"):
         raise _core.InputError(f"realcam {_core.__version__} pickles no such object; realcam {made_by} wrote it")
+    name = type_.__name__
     if not isinstance(state_format, int) or state_format != FORMAT:
         other = f"{state_format:d}" if isinstance(state_format, int) and abs(state_format) < 10**9 else "?"
         raise _core.InputError(
-            f"this {kind} was pickled by realcam {made_by} in format {other}; realcam {_core.__version__} reads format "
+            f"this {name} was pickled by realcam {made_by} in format {other}; realcam {_core.__version__} reads format "
             f"{FORMAT} only"
         )
     why = "it is damaged"
     try:
         return type_._restored(state)
     except _core.RealcamError as error:
-        why = str(error)
-    except (RuntimeError, TypeError, ValueError, AttributeError, OverflowError):
-        pass  # messages about C++ types
-    raise _core.InputError(f"this {kind} was pickled by realcam {made_by} and cannot be read: {why}")
+        why = " ".join(str(error).split())  # it may quote an array, whose text has several lines
+    except (RuntimeError, TypeError, ValueError, AttributeError, OverflowError, LookupError):
+        pass  # messages about C++ types or arguments of __init__
+    raise _core.InputError(f"this {name} was pickled by realcam {made_by} and cannot be read: {why}")
 
 
 def described(value: Any, buffers: list[np.ndarray]) -> Any:
@@ -95,24 +99,16 @@ def from_description(description: Any, buffer: np.ndarray, kind: str) -> Any:
     return restored(kind, state_format, version, state)
 
 
-def set_checked_state(value: Any, state: Any, check: Callable[[Any], object]) -> None:
-    """Implements `__setstate__` of a frozen dataclass: validates the fields by __init__ and by check(object).
+class PickledByFields:
+    """Base class of frozen dataclasses: pickles hold the fields, which __init__ checks when they are read."""
 
-    Raises InputError. State that is not a field, such as a cached property, is ignored.
-    """
-    names = {field.name for field in dataclasses.fields(value)}
-    why = "it is damaged"
-    try:
-        made = type(value)(**{name: item for name, item in state.items() if name in names})
-        check(made)
-    except _core.RealcamError as error:
-        why = str(error)
-    except (TypeError, ValueError, AttributeError, LookupError):
-        pass  # messages about arguments of __init__
-    else:
-        vars(value).update(vars(made))
-        return
-    raise _core.InputError(f"this {type(value).__name__} cannot be read from its pickle: {why}")
+    def __reduce__(self) -> Any:
+        state = tuple(getattr(self, field.name) for field in dataclasses.fields(self))  # type: ignore[arg-type]
+        return restored, (type(self), FORMAT, _core.__version__, state)
+
+    @classmethod
+    def _restored(cls, state: Any) -> Self:
+        return cls(*state)
 
 
 def same_arrays(one: Any, other: Any) -> bool:

@@ -16,14 +16,14 @@ import numpy as np
 from . import _core, demosaicing, dng, image_file
 from ._core import Film, InputError, Sensor
 from .image import Image
-from .pickling import set_checked_state
+from .pickling import PickledByFields
 
 # Range of exposure times in s, of ISO values and of pixel pitches in um: positive numbers that float32 represents.
 MIN_POSITIVE, MAX_POSITIVE = 1e-37, 1e38
 
 
 @dataclass(frozen=True, eq=False)
-class RawImage:
+class RawImage(PickledByFields):
     """Raw digital numbers of a sensor, linear in light, with the data for their development.
 
     mosaic: (H, W) uint16, one digital number per pixel, row 0 at the top; sensor.color_filter_array tells its filter.
@@ -57,9 +57,7 @@ class RawImage:
             number = getattr(self, name)
             if not (isinstance(number, Real) and MIN_POSITIVE <= float(number) <= MAX_POSITIVE):
                 raise InputError(f"{name} must be a positive number, from 1e-37 to 1e38")
-
-    def __setstate__(self, state: Any) -> None:
-        set_checked_state(self, state, type(self).metadata)
+        self.metadata()  # raises for other attributes of the wrong type
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, RawImage):

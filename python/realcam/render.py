@@ -66,8 +66,7 @@ def render(
     warn_of_effects(camera, final_settings)
 
     def take_image(callback: ProgressCallback | None) -> Image:
-        picture = _core._render(scene, camera, final_settings, device, callback, on_stop == "keep")
-        return Image(**picture, camera=camera, seed=final_settings.seed, settings=final_settings, plan=plan)
+        return _core._render(scene, camera, final_settings, device, callback, on_stop == "keep", plan)
 
     if progress is True:
         from .progress import progress_bar

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -162,9 +162,7 @@ class Session:
         Layers include all samples that were begun, even after a cancellation. A pixel without a sample is black, at
         depth inf. Raises InputError before the first sample.
         """
-        picture = self._core.picture() | {"spp": round(float(self.samples.mean()))}
-        settings = self.settings
-        return Image(**picture, camera=self.camera, seed=settings.seed, settings=settings, plan=self._resolved.summary)
+        return replace(self._core.image(self._resolved.summary), spp=round(float(self.samples.mean())))
 
     def expose(
         self, region: _Region, first: int = 0, spp: int = 256, counts: NDArray[np.uint32] | None = None
@@ -209,9 +207,8 @@ class Session:
         layers = film.layers
         if layers is None and self.has_sampled_layers:
             layers = np.zeros(film.pixels.shape, _core._LAYER_SUM)
-        picture = self._core.picture_of(film.pixels, layers, film.splats, NO_STATS | film.stats)
-        settings = self.settings
-        return Image(**picture, camera=self.camera, seed=settings.seed, settings=settings, plan=self._resolved.summary)
+        stats = NO_STATS | film.stats
+        return self._core.image_of(film.pixels, layers, film.splats, stats, self._resolved.summary)
 
     @property
     def has_sampled_layers(self) -> bool:

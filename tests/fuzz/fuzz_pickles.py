@@ -19,13 +19,8 @@ def read(case: tuple[Any, ...]) -> tuple[str, str]:
     from look_at import look_at
     from realcam import pickling
 
-    kind, arguments = case
     try:
-        if kind == "restored":
-            value = pickling.restored(*arguments)
-        else:
-            value = object.__new__(getattr(rc, kind))
-            value.__setstate__(arguments)
+        value = pickling.restored(*case)
     except rc.InputError as error:
         one_line = "\n" not in str(error) and len(str(error)) < 2500
         return ("refused", "") if one_line else ("broken", "a message of several lines, or a long one")
@@ -39,34 +34,22 @@ def read(case: tuple[Any, ...]) -> tuple[str, str]:
 
 
 def seeds() -> list[tuple[Any, ...]]:
-    """Contents of pickles of all kinds: the arguments of `restored`, or the state of a class written in Python."""
+    """Contents of pickles of all kinds: the arguments of `restored`."""
     from picklable_values import ALL_MAKERS
-    from realcam import pickling
 
-    cases: list[tuple[Any, ...]] = []
-    for kind, makers in sorted(ALL_MAKERS.items()):
-        for make in makers:
-            function, arguments, *state = make().__reduce_ex__(4)
-            cases.append(("restored", arguments) if function is pickling.restored else (kind, state[0]))
-    return cases
+    return [make().__reduce__()[1] for _, makers in sorted(ALL_MAKERS.items()) for make in makers]
 
 
 def case_of(cases: list[tuple[Any, ...]], seed: int, number: int) -> tuple[Any, ...]:
     from mutate_state import OTHERS, mutated
 
     draw = random.Random(seed * 2**40 + number)
-    kind, arguments = cases[number % len(cases)]
-    if kind == "restored":
-        name, *versions, state = arguments
-        if draw.random() < 0.02:
-            at, head = draw.randrange(3), [name, *versions]
-            head[at] = draw.choice((*OTHERS, mutated((head[at],), draw)))
-            return kind, (*head, state)
-        return kind, (name, *versions, mutated(state, draw))
-    field = draw.choice(sorted(arguments))
-    if draw.random() < 0.2:
-        return kind, draw.choice((*OTHERS, {k: v for k, v in arguments.items() if k != field}))
-    return kind, {**arguments, field: mutated(arguments[field], draw)}
+    *head, state = cases[number % len(cases)]
+    if draw.random() < 0.02:
+        at = draw.randrange(len(head))
+        head[at] = draw.choice((*OTHERS, mutated((head[at],), draw)))
+        return (*head, state)
+    return (*head, mutated(state, draw))
 
 
 if __name__ == "__main__":

@@ -150,25 +150,17 @@ py::array_t<double> film_of_white(const std::string& illuminant) {
 
 }  // namespace
 
-template <>
-struct RestoredCheck<CameraRaysResult> {
-    static void check(const CameraRaysResult& rays) {
-        const py::ssize_t count = restored_length(rays.weights);
-        for (const py::object* vectors : std::initializer_list<const py::object*>{&rays.origins_m, &rays.directions})
-            check_restored_array(*vectors, {'f', {count, 3}});
-        for (const py::object* numbers :
-             std::initializer_list<const py::object*>{&rays.weights, &rays.wavelengths_nm, &rays.times_s})
-            check_restored_array(*numbers, {'f', {count}});
-        check_restored_array(rays.pixels, {'i', {count}});
-    }
-};
-
 void bind_camera_rays(py::module_& m) {
     py::class_<CameraRaysResult> rays(
         m, "CameraRays",
         R"(Rays of a camera in front of its lens, spp for each pixel, row by row from the upper left. numpy arrays or
 DeviceArrays. See Camera.generate_rays.)");
-    def_result(rays);
+    def_result(rays, [](const CameraRaysResult& r) {
+        const py::ssize_t count = length_of(r.weights);
+        check_arrays('f', {count, 3}, {r.origins_m, r.directions});
+        check_arrays('f', {count}, {r.weights, r.wavelengths_nm, r.times_s});
+        check_arrays('i', {count}, {r.pixels});
+    });
     rays.def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3) float64: origins, scene.")
         .def_readonly("directions", &CameraRaysResult::directions, "(N, 3) float32: unit directions, scene.")
         .def_readonly(

@@ -13,14 +13,6 @@ namespace realcam::bindings {
 
 using namespace py::literals;
 
-// Unpickled tables need no check beyond that of their members.
-template <>
-struct RestoredCheck<ParaxialRay> : AnyMembers {};
-template <>
-struct RestoredCheck<SeidelRow> : AnyMembers {};
-template <>
-struct RestoredCheck<SeidelTable> : AnyMembers {};
-
 namespace {
 
 /// Returns a function of a table that returns the array (S,) of f(surface).

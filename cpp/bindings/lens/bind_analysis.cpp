@@ -141,49 +141,6 @@ Spot make_spot(const LensSystem& lens, double field_deg, std::optional<double> o
     return spot_of(field_rays(lens, wavelength, field, std::move(points), loop), distance, loop);
 }
 
-}  // namespace
-
-template <>
-struct LastEnumerator<RayStatus> : LastIs<RayStatus::bad_input> {};
-template <>
-struct RestoredCheck<PupilPoint> : AnyMembers {};
-template <>
-struct RestoredCheck<AimedRay> : AnyMembers {};
-template <>
-struct RestoredCheck<FieldRays> {
-    static void check(const FieldRays& rays) { require_restored(rays.rays.size() == rays.pattern.size()); }
-};
-template <>
-struct RestoredCheck<Wavefront> {
-    static void check(const Wavefront& w) { require_restored(w.opd.size() == w.rays.pattern.size()); }
-};
-template <>
-struct RestoredCheck<PythonWavefront> {
-    static void check(const PythonWavefront& w) {
-        require_restored(w.columns >= 0 && w.columns <= kMaxPatternSamples);
-        if (w.columns == 0) return;
-        for (const PupilPoint& point : w.wavefront.rays.pattern)
-            require_restored(point.cell >= 0 && point.cell < w.columns * w.columns);
-    }
-};
-template <>
-struct RestoredCheck<SpotSize> : AnyMembers {};
-template <>
-struct RestoredCheck<Spot> {
-    static void check(const Spot& spot) { require_restored(spot.points.size() == spot.rays.pattern.size()); }
-};
-template <>
-struct RestoredCheck<AimedRays> {
-    static void check(const AimedRays& aimed) {
-        const py::ssize_t count = restored_length(aimed.status);
-        for (const Array* vectors : {&aimed.origins_mm, &aimed.directions})
-            check_restored_array(*vectors, {'f', {count, 3}});
-        check_restored_array(aimed.status, {'i', {count}});
-    }
-};
-
-namespace {
-
 using PythonLens = py::class_<LensSystem>;
 
 /// Defines the properties of a result that describe its rays.
@@ -199,7 +156,11 @@ void def_rays(py::class_<T>& type, const RaysOf& rays_of) {
 void bind_aim(py::module_& m, PythonLens& lens) {
     py::class_<AimedRays> aimed_rays(m, "AimedRays",
                                      "Rays of one object point in front of the lens, in the lens frame. See Lens.aim.");
-    def_result(aimed_rays);
+    def_result(aimed_rays, [](const AimedRays& aimed) {
+        const py::ssize_t count = length_of(aimed.status);
+        check_arrays('f', {count, 3}, {aimed.origins_mm, aimed.directions});
+        check_arrays('i', {count}, {aimed.status});
+    });
     aimed_rays
         .def_readonly(
             "origins_mm", &AimedRays::origins_mm,
@@ -233,7 +194,13 @@ void bind_wavefront(py::module_& m, PythonLens& lens) {
         m, "Wavefront",
         R"(Optical path differences (OPD) of one object point over the stop, in waves; positive where the wavefront is
 ahead of the reference sphere. Means are over the area of the open stop. See Lens.wavefront.)");
-    def_value(wavefront);
+    def_value(wavefront, [](W w) {
+        const std::vector<PupilPoint>& pattern = w.wavefront.rays.pattern;
+        require_restored(w.wavefront.rays.rays.size() == pattern.size() && w.wavefront.opd.size() == pattern.size());
+        require_restored(w.columns >= 0 && w.columns <= kMaxPatternSamples);
+        for (const PupilPoint& point : pattern)
+            require_restored(w.columns == 0 || (point.cell >= 0 && point.cell < w.columns * w.columns));
+    });
     def_rays(wavefront, [](W w) -> const FieldRays& { return w.wavefront.rays; });
     wavefront
         .def_property_readonly(
@@ -298,7 +265,9 @@ void bind_spot(py::module_& m, PythonLens& lens) {
         m, "Spot",
         R"(Spot diagram: intersections of the rays of one object point with a plane behind the lens, in
 mm from the axis. See Lens.spot.)");
-    def_value(spot);
+    def_value(spot, [](const Spot& s) {
+        require_restored(s.rays.rays.size() == s.rays.pattern.size() && s.points.size() == s.rays.pattern.size());
+    });
     def_rays(spot, [](const Spot& s) -> const FieldRays& { return s.rays; });
     spot.def_property_readonly(
             "points_mm",

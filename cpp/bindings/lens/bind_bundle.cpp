@@ -148,33 +148,18 @@ PythonFilmPupil make_film_pupil(const LensSystem& lens, std::pair<double, double
 
 }  // namespace
 
-template <>
-struct RestoredCheck<PythonFilmPupil> {
-    static void check(const PythonFilmPupil& p) {
-        check_restored_array(p.outline, {'f', {restored_length(p.outline), 2, 2}});
-    }
-};
-template <>
-struct RestoredCheck<ChiefRay> : AnyMembers {};
-template <>
-struct RestoredCheck<RayBundle> {
-    static void check(const RayBundle& b) {
-        const py::ssize_t count = restored_length(b.energy), pieces = restored_length(b.edge_entry_mm);
-        for (const Array* numbers : {&b.energy, &b.path_mm, &b.amplitude})
-            check_restored_array(*numbers, {'f', {count}});
-        for (const Array* pairs : {&b.entry_mm, &b.points_mm, &b.slopes})
-            check_restored_array(*pairs, {'f', {count, 2}});
-        check_restored_array(b.directions, {'f', {count, 3}});
-        for (const Array* edge : {&b.edge_entry_mm, &b.edge_slopes}) check_restored_array(*edge, {'f', {pieces, 2, 2}});
-    }
-};
-
 void bind_bundle(py::module_& m) {
     py::class_<RayBundle> bundle(m, "RayBundle",
                                  R"(Rays that represent the light of one object point, at one wavelength, that passes
 the lens. They lie at the nodes of Gauss quadrature between the edges of the light. Lens frame; x and y from the axis.
 See Lens.bundle.)");
-    def_result(bundle);
+    def_result(bundle, [](const RayBundle& b) {
+        const py::ssize_t count = length_of(b.energy), pieces = length_of(b.edge_entry_mm);
+        check_arrays('f', {count}, {b.energy, b.path_mm, b.amplitude});
+        check_arrays('f', {count, 2}, {b.entry_mm, b.points_mm, b.slopes});
+        check_arrays('f', {count, 3}, {b.directions});
+        check_arrays('f', {pieces, 2, 2}, {b.edge_entry_mm, b.edge_slopes});
+    });
     bundle
         .def_readonly("entry_mm", &RayBundle::entry_mm,
                       R"((N, 2): intersections of the rays with the entry plane in front of the lens, over which the
@@ -242,7 +227,8 @@ D the distance of the object. Raises InputError if no light passes.)";
         m, "FilmPupil",
         R"(Exit pupil as seen from a film point, in optical direction cosines: x and y components of the unit direction
 of light travelling to the film, times the refractive index in front of the film. See Lens.film_pupil.)");
-    def_result(film_pupil_class);
+    def_result(film_pupil_class,
+               [](const PythonFilmPupil& p) { check_arrays('f', {length_of(p.outline), 2, 2}, {p.outline}); });
     film_pupil_class
         .def_readonly("irradiance", &PythonFilmPupil::irradiance,
                       R"(Irradiance of the film point for a scene of uniform unit radiance, which is the pupil's area in

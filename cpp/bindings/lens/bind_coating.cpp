@@ -75,7 +75,7 @@ CoatingLayer make_layer(const CoatingMaterialLike& material, std::optional<doubl
     if (design_wavelength_nm && !(*design_wavelength_nm >= 100 && *design_wavelength_nm <= 20000))
         throw InputError("the design wavelength must lie between 100 and 20000 nm");
     layer.thickness_nm = waves ? thickness_of_waves(layer.material, *waves, *design_wavelength_nm) : *thickness_nm;
-    check_coating(layered_coating({layer}));
+    validate(layer);
     return layer;
 }
 
@@ -88,7 +88,7 @@ Coating make_coating(
     Coating coating = reflectance       ? stated_reflectance(*reflectance, name)
                       : metal.is_none() ? layered_coating(layers, name)
                                         : metal_mirror(coating_material_from(metal), layers, name);
-    check_coating(coating);
+    validate(coating);
     return coating;
 }
 
@@ -158,30 +158,18 @@ std::string text_of(const Coating& coating) {
     return text + (coating.layers.empty() ? "" : ", " + counted(coating.layers.size(), "layer")) + '>';
 }
 
-}  // namespace
-
-template <>
-struct RestoredCheck<CoatingResponse> {
-    static void check(const CoatingResponse& r) {
-        require_restored(py::isinstance<py::array>(r.reflectance_s));
-        const auto first = py::reinterpret_borrow<py::array>(r.reflectance_s);
-        const std::vector<py::ssize_t> shape(first.shape(), first.shape() + first.ndim());
-        for (const py::object* fractions : {&r.reflectance_s, &r.reflectance_p, &r.transmittance_s, &r.transmittance_p,
-                                            &r.absorptance_s, &r.absorptance_p})
-            check_restored_array(*fractions, {'f', shape});
-        for (const py::object* amplitudes : {&r.r_s, &r.r_p, &r.t_s, &r.t_p})
-            check_restored_array(*amplitudes, {'c', shape});
-    }
-};
-
-namespace {
-
 void bind_response(py::module_& m) {
     py::class_<CoatingResponse> type(m, "CoatingResponse",
                                      R"(Reflection and transmission of a coated surface: arrays with the common
 (broadcast) shape of the angles and wavelengths. Fractions of the power; reflectance, transmittance and
 absorptance add up to 1. See Coating.response.)");
-    def_result(type);
+    def_result(type, [](const CoatingResponse& r) {
+        const std::vector<py::ssize_t> shape = shape_of(r.reflectance_s);
+        check_arrays(
+            'f', shape,
+            {r.reflectance_s, r.reflectance_p, r.transmittance_s, r.transmittance_p, r.absorptance_s, r.absorptance_p});
+        check_arrays('c', shape, {r.r_s, r.r_p, r.t_s, r.t_p});
+    });
     type.def_readonly("reflectance_s", &CoatingResponse::reflectance_s, "Reflected fraction of s-polarised power.")
         .def_readonly("reflectance_p", &CoatingResponse::reflectance_p, "Reflected fraction of p-polarised power.")
         .def_readonly("transmittance_s", &CoatingResponse::transmittance_s,

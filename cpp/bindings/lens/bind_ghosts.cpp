@@ -46,19 +46,14 @@ std::vector<Ghost> ghosts_of(const LensSystem& lens, double film_reflectance) {
 
 }  // namespace
 
-template <>
-struct RestoredCheck<Ghost> {
-    static void check(const Ghost& ghost) {
-        require_restored(0 <= ghost.second && ghost.second < ghost.first && ghost.first <= kMaxSurfaces);
-    }
-};
-
 void bind_ghosts(py::module_& m) {
     py::class_<Ghost> ghost(m, "Ghost",
                             R"(Ghost image: light that two surfaces reflect on its way to the film. Surface `first`
 reflects it back towards the scene, then surface `second`, in front of `first`, forward again. Indices as in
 Lens.surfaces; the index of the film is the number of surfaces.)");
-    def_hashable_value(ghost);
+    def_hashable_value(ghost, [](const Ghost& g) {
+        require_restored(0 <= g.second && g.second < g.first && g.first <= kMaxSurfaces);
+    });
     ghost.def_readonly("first", &Ghost::first, "Index of the surface that the light reaches first, or of the film.")
         .def_readonly("second", &Ghost::second, "Index of the surface in front of it that reflects the light again.")
         .def_readonly("effective_focal_length_mm", &Ghost::effective_focal_length,

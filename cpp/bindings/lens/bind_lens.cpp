@@ -55,10 +55,6 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
     lens.film_radius_of_curvature = film_radius_of_curvature;
     lens.iris = {blades, rounding, rotation_deg * std::numbers::pi / 180};
     lens.focusing.nearest_mm = 1000 * nearest_focus_m;
-    if (!(wavelength_nm >= 100 && wavelength_nm <= 20000))
-        throw LensFileError("the design wavelength must lie between 100 and 20000 nm");
-    if (!(nearest_focus_m >= 0))
-        throw LensFileError("the nearest focus distance must be 0 (limited only by the optics) or more");
     if (focus_group) {
         if (focus_group->first < 0)
             throw LensFileError("the focus group must be (first, last) with 0 <= first <= last");

@@ -20,17 +20,6 @@ namespace realcam::bindings {
 
 using namespace py::literals;
 
-template <>
-struct RestoredCheck<PsfColour> : AnyMembers {};
-template <>
-struct RestoredCheck<Psf> {
-    static void check(const Psf& psf) {
-        require_restored(psf.size >= 2 && psf.pitch_um > 0 && std::isfinite(psf.pitch_um) && !psf.colours.empty());
-        const auto size = static_cast<std::size_t>(psf.size);
-        require_restored(psf.values.size() == size * size);
-    }
-};
-
 namespace {
 
 using Wavelengths = std::variant<double, std::vector<double>>;
@@ -145,7 +134,11 @@ void bind_psf(py::module_& m) {
     py::class_<Psf> psf(m, "PSF",
                         "Point spread function: distribution of the light of one object point on the film, on a square "
                         "grid of points (docs/psf.md).");
-    def_value(psf);
+    def_value(psf, [](const Psf& p) {
+        require_restored(p.size >= 2 && p.pitch_um > 0 && std::isfinite(p.pitch_um) && !p.colours.empty());
+        const auto size = static_cast<std::size_t>(p.size);
+        require_restored(p.values.size() == size * size);
+    });
     psf.def_property_readonly(
            "values", [](const Psf& p) { return array_from(p.values, {p.size, p.size}); },
            R"((size, size): fraction of the light that passes the lens, per um^2; over the whole film the values times

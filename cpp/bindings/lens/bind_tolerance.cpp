@@ -130,8 +130,7 @@ LensSystem make_copy(const ToleranceEvaluator& evaluator, const ErrorNames& name
     const CopySettings settings{film_shift, {film_slope.first, film_slope.second}, {x, y, z}};
     LensSystem copy = with_settings(with_errors(evaluator.nominal(), errors, sizes.data()), settings,
                                     evaluator.request().compensators);
-    validate(copy);
-    if (const std::string why = film_distance_error(copy); !why.empty()) throw LensFileError(why);
+    validate_with_film(copy);
     return copy;
 }
 

@@ -151,19 +151,6 @@ TraceResult trace(const LensSystem& lens, const ArrayLike& origins, const ArrayL
 
 }  // namespace
 
-template <>
-struct RestoredCheck<TraceResult> {
-    static void check(const TraceResult& result) {
-        const py::ssize_t count = restored_length(result.status);
-        for (const py::object* vectors : {&result.origins_mm, &result.directions})
-            check_restored_array(*vectors, {'f', {count, 3}});
-        check_restored_array(result.optical_path_mm, {'f', {count}});
-        for (const py::object* numbers : {&result.status, &result.surface_index})
-            check_restored_array(*numbers, {'i', {count}});
-        if (!result.transmission.is_none()) check_restored_array(result.transmission, {'f', {count}});
-    }
-};
-
 void bind_trace(py::module_& m) {
     const std::pair<const char*, RayStatus> statuses[] = {
         {"OK", RayStatus::ok},
@@ -180,7 +167,13 @@ void bind_trace(py::module_& m) {
         m, "TraceResult",
         "Rays behind a lens, in the lens frame: numpy arrays, or DeviceArrays if the input was in a GPU's memory. See "
         "Lens.trace.");
-    def_result(result);
+    def_result(result, [](const TraceResult& r) {
+        const py::ssize_t count = length_of(r.status);
+        check_arrays('f', {count, 3}, {r.origins_mm, r.directions});
+        check_arrays('f', {count}, {r.optical_path_mm});
+        check_arrays('i', {count}, {r.status, r.surface_index});
+        if (!r.transmission.is_none()) check_arrays('f', {count}, {r.transmission});
+    });
     result
         .def_readonly(
             "origins_mm", &TraceResult::origins_mm,

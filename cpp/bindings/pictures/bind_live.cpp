@@ -12,7 +12,7 @@
 #include "../bindings.hpp"
 #include "../values/arrays.hpp"
 #include "owned_session.hpp"
-#include "picture.hpp"
+#include "python_image.hpp"
 
 namespace realcam::bindings {
 
@@ -39,9 +39,9 @@ public:
     }
 
     /// Renders the last frame's camera and settings with layers.
-    PictureFields image(const Camera& camera, const RenderSettings& settings) {
+    PythonImage image(const Camera& camera, const RenderSettings& settings) {
         Image image = session_.use([&](const auto&) { return view_->picture(camera, settings, heed_signals); });
-        return picture_from(std::move(image), settings.layers);
+        return python_image(std::move(image), camera, settings);
     }
 
     /// Returns the exposure (H, W, 3) in lux seconds and the depth (H, W) in m of the samples so far: DeviceArrays if
@@ -112,7 +112,7 @@ DeviceError; Cancelled if cancel() was called; KeyboardInterrupt on Ctrl-C.)")
         .def("picture", &PythonLiveView::picture,
              "Returns exposure (H, W, 3) in lux seconds and depth (H, W) in m of the accumulated samples.")
         .def("image", &PythonLiveView::image, "camera"_a, "settings"_a,
-             "Returns the fields of an Image of the last frame's camera and settings, with layers.")
+             "Returns an Image of the last frame's camera and settings, with layers.")
         .def("cancel", &PythonLiveView::cancel, "Cancels frames in progress, which then raise Cancelled.");
 }
 

@@ -10,6 +10,7 @@
 
 #include "../../image_io/image_file.hpp"
 #include "../bindings.hpp"
+#include "python_image.hpp"
 
 namespace realcam::bindings {
 
@@ -75,19 +76,9 @@ std::vector<image_io::PictureView::Layer> layers_from(const py::dict& layers, co
     return views;
 }
 
-/// Returns an attribute of a realcam.Image. Throws InputError if it has another type.
-template <class T>
-T member(const py::object& image, const char* name) {
-    try {
-        return image.attr(name).cast<T>();
-    } catch (const py::cast_error&) {
-        throw InputError("the image's " + std::string(name) + " must have the type that rc.render returns");
-    }
-}
-
 /// Writes a realcam.Image to a file. `film_tone`: true for the tone curve "film", false for "linear".
-void write_picture(const py::bytes& path, const py::object& image, bool film_tone) {
-    const auto exposure = member<FloatArray>(image, "pixels"), depth = member<FloatArray>(image, "depth");
+void write_picture(const py::bytes& path, const PythonImage& image, bool film_tone) {
+    const auto exposure = attribute_of<FloatArray>(image, "pixels"), depth = attribute_of<FloatArray>(image, "depth");
     if (exposure.ndim() != 3 || exposure.shape(2) != 3 || depth.ndim() != 2 || depth.shape(0) != exposure.shape(0) ||
         depth.shape(1) != exposure.shape(1))
         throw InputError("the picture's pixels must have the shape (H, W, 3), and its depth (H, W)");
@@ -97,17 +88,19 @@ void write_picture(const py::bytes& path, const py::object& image, bool film_ton
                                         exposure.data(),
                                         depth.data(),
                                         layers_from(py::dict(image.attr("layers")), depth, layer_arrays),
-                                        member<IdNames>(image, "object_names"),
-                                        member<IdNames>(image, "material_names")};
-    io::ImageMetadata metadata =
-        io::metadata_of(member<Camera>(image, "camera"), member<RenderSettings>(image, "settings"));
-    metadata.spp = member<int>(image, "spp");
-    metadata.seed = member<std::uint32_t>(image, "seed");
-    metadata.denoiser = member<std::string>(image, "denoiser");
-    metadata.plan = member<std::string>(image, "plan");
+                                        attribute_of<IdNames>(image, "object_names"),
+                                        attribute_of<IdNames>(image, "material_names")};
+    const io::ImageMetadata metadata = metadata_of(image);
     const std::string file = path;
     const Unlocked unlocked;
     image_io::write_image(picture, file, metadata, film_tone ? ToneCurve::film : ToneCurve::linear, heed_signals);
+}
+
+/// Returns the metadata of picture files, text by name.
+Typed<"dict[str, str]", py::dict> metadata_entries(const PythonImage& image) {
+    py::dict entries;
+    for (const auto& [name, value] : metadata_of(image).entries()) entries[py::str(name)] = value;
+    return entries;
 }
 
 /// Metadata of an image file: pairs (name, value).
@@ -145,6 +138,8 @@ void bind_pictures(py::module_& m) {
           "Internal: use realcam.image_file.read_picture. Returns the pixels (H, W, 3) and a list of warnings.");
     m.def("_write_picture", &write_picture, "path"_a, "image"_a, "film_tone"_a,
           "Internal: use Image.save. film_tone: True for the tone curve \"film\", False for \"linear\".");
+    m.def("_metadata", &metadata_entries, "image"_a,
+          "Internal: use Image.metadata. Returns the metadata of picture files, text by name.");
     m.def("_write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a,
           "Internal. Writes 8-bit sRGB values (H, W, 3) with metadata, pairs (name, value), to an image file.");
     m.def("_read_film", &read_film, "path"_a,

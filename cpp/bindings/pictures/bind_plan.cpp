@@ -72,11 +72,6 @@ std::tuple<std::string, RenderSettings, std::string, std::string> resolved_video
 
 }  // namespace
 
-template <>
-struct RestoredCheck<Decision> : AnyMembers {};
-template <>
-struct RestoredCheck<Planned> : AnyMembers {};
-
 void bind_plan(py::module_& m) {
     m.def(
         "_number_text", [](double value, int digits) { return number_text(value, digits); }, "value"_a, "digits"_a,

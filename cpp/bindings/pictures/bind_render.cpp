@@ -18,7 +18,7 @@
 #include "../values/short_text.hpp"
 #include "../values/value_methods.hpp"
 #include "owned_session.hpp"
-#include "picture.hpp"
+#include "python_image.hpp"
 
 namespace realcam::bindings {
 
@@ -69,13 +69,14 @@ namespace {
 
 /// Renders a picture. `keeps_stopped`: if the progress function stops rendering, returns the picture of the samples
 /// taken so far; otherwise throws Cancelled then.
-PictureFields render(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
-                     const std::string& device, const ProgressFunction& progress, bool keeps_stopped) {
+PythonImage render(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                   const std::string& device, const ProgressFunction& progress, bool keeps_stopped,
+                   const std::string& plan) {
     const Progress report = progress_of(progress);
     const KeepGoing finishes = keeps_stopped ? KeepGoing(heed_signals) : KeepGoing();
     Image image = OwnedSession::shared(device).use(
         [&](const auto& session) { return take_picture(*session, scene, camera, settings, report, finishes); });
-    return picture_from(std::move(image), settings.layers);
+    return python_image(std::move(image), camera, settings, plan);
 }
 
 /// Converts exposure in lux seconds (any shape) to 8-bit sRGB values of the same shape.
@@ -105,9 +106,6 @@ std::string line_text(const Device& device) {
 
 }  // namespace
 
-template <>
-struct RestoredCheck<Device> : AnyMembers {};
-
 void bind_render(py::module_& m) {
     py::class_<RenderStats> stats(m, "RenderStats", "Render time and number of rays of a picture.");
     def_hashable_value(stats);
@@ -127,8 +125,9 @@ void bind_render(py::module_& m) {
             return "<realcam.RenderStats " + digits(s.seconds) + " s on " + s.device + '>';
         });
     m.def("_render", &render, "scene"_a, "camera"_a, "settings"_a, "device"_a, "progress"_a, "keeps_stopped"_a,
-          R"(Internal: use realcam.render. Returns the fields of an Image. keeps_stopped: if progress stops rendering,
-return the picture of the samples taken so far instead of raising Cancelled.)");
+          "plan"_a,
+          R"(Internal: use realcam.render. keeps_stopped: if progress stops rendering, return the picture of the samples
+taken so far instead of raising Cancelled. plan: summary of the plan.)");
     m.def(
         "_effect_notices",
         [](const LensSystem& lens, const RenderSettings& settings) { return effect_notices(settings.effects, lens); },

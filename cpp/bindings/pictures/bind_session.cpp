@@ -7,7 +7,7 @@
 #include "../values/arrays.hpp"
 #include "film_parts.hpp"
 #include "owned_session.hpp"
-#include "picture.hpp"
+#include "python_image.hpp"
 
 namespace realcam::bindings {
 
@@ -58,14 +58,11 @@ public:
                         "spp_wanted"_a = reached.samples_required, "shortfall"_a = shortfall_message(reached, goal));
     }
 
-    /// Returns the picture of all samples so far.
-    PictureFields picture() {
-        LayerSet layers;
-        Image image = session_.use([&](const auto& session) {
-            layers = settings_.layers;
-            return session->picture(heed_signals);
-        });
-        return picture_from(std::move(image), layers);
+    /// Returns the picture of all samples so far. `plan`, here and below: summary of the plan, or empty.
+    PythonImage image(const std::string& plan) {
+        auto [image, camera, settings] = session_.use(
+            [&](const auto& session) { return std::tuple(session->picture(heed_signals), camera_, settings_); });
+        return python_image(std::move(image), camera, settings, plan);
     }
 
     /// Returns radiance sums of a region's pixels for `count` samples with indices from `first`, apart from this
@@ -97,16 +94,14 @@ public:
     }
 
     /// Develops a film that was accumulated from parts, wherever they were exposed.
-    PictureFields picture_of(const FilmArrays& arrays, const StatNumbers& stats) {
+    PythonImage image_of(const FilmArrays& arrays, const StatNumbers& stats, const std::string& plan) {
         AccumulatedFilm film = arrays.film();
         film.stats = stats_from(stats);
         film.stats.device = device_;
-        LayerSet layers;
-        Image image = with_session([&](Session& session, const Progress&) {
-            layers = settings_.layers;
-            return session.picture_of(film, heed_signals);
+        auto [image, camera, settings] = with_session([&](Session& session, const Progress&) {
+            return std::tuple(session.picture_of(film, heed_signals), camera_, settings_);
         });
-        return picture_from(std::move(image), layers);
+        return python_image(std::move(image), camera, settings, plan);
     }
 
     const std::string& device() const { return device_; }
@@ -141,7 +136,7 @@ void bind_session(py::module_& m) {
         .def("add", &PythonSession::add, "spp"_a, "Takes spp more samples of each pixel.")
         .def("add_until", &PythonSession::add_until, "settings"_a,
              "Takes samples until the noise goal of these settings is reached.")
-        .def("picture", &PythonSession::picture, "Returns the fields of an Image of all samples so far.")
+        .def("image", &PythonSession::image, "plan"_a, "Returns an Image of all samples so far.")
         .def("sample_region", &PythonSession::sample_region, "region"_a, "first"_a, "count"_a, "counts"_a = py::none(),
              R"(Returns pixel sums of a region, for count samples with indices from first. region: (column, row, width,
 height). counts: number of the samples that each pixel takes, row by row; None: all.)")
@@ -150,12 +145,12 @@ height). counts: number of the samples that each pixel takes, row by row; None: 
         .def("sample_splats", &PythonSession::sample_splats, "first"_a, "count"_a,
              "Returns films of the light that is traced apart from the samples of pixels.")
         .def(
-            "picture_of",
+            "image_of",
             [](PythonSession& self, const InputArray<PixelSum>& pixels,
-               const std::optional<InputArray<LayerSum>>& layers, const SplatList& splats,
-               const StatNumbers& stats) { return self.picture_of({pixels, layers, splats}, stats); },
-            "pixels"_a, "layers"_a, "splats"_a, "stats"_a,
-            "Returns the fields of an Image of a film that was accumulated from parts.")
+               const std::optional<InputArray<LayerSum>>& layers, const SplatList& splats, const StatNumbers& stats,
+               const std::string& plan) { return self.image_of({pixels, layers, splats}, stats, plan); },
+            "pixels"_a, "layers"_a, "splats"_a, "stats"_a, "plan"_a,
+            "Returns an Image of a film that was accumulated from parts.")
         .def("cancel", &PythonSession::cancel, "Ends the running call of another thread, which raises Cancelled.")
         .def_property_readonly("device", &PythonSession::device, "Name of the device, for people.")
         .def_property_readonly("samples", &PythonSession::samples, "(H, W): number of samples of each pixel.")

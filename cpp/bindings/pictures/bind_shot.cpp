@@ -26,19 +26,6 @@ namespace realcam::bindings {
 
 using namespace py::literals;
 
-template <>
-struct LastEnumerator<CameraKeyInterpolation> : LastIs<CameraKeyInterpolation::step> {};
-template <>
-struct RestoredCheck<CameraKey> {
-    static void check(const CameraKey& key) { validate(key); }
-};
-template <>
-struct RestoredCheck<ShakeKey> : AnyMembers {};
-template <>
-struct RestoredCheck<Shake> {
-    static void check(const Shake& shake) { validate(shake); }
-};
-
 namespace {
 
 using Number = std::optional<double>;
@@ -324,19 +311,6 @@ Camera calibrated_camera(const shot::CalibrationRequest& request, const std::opt
     }
 }
 
-/// Returns the metadata of an image file, text by name.
-Typed<"dict[str, str]", py::dict> metadata(const Camera& camera, const RenderSettings& settings, int spp,
-                                           std::uint32_t seed, const std::string& plan, const std::string& denoiser) {
-    py::dict entries;
-    io::ImageMetadata metadata = io::metadata_of(camera, settings);
-    metadata.spp = spp;
-    metadata.seed = seed;
-    metadata.plan = plan;
-    metadata.denoiser = denoiser;
-    for (const auto& [name, value] : metadata.entries()) entries[py::str(name)] = value;
-    return entries;
-}
-
 }  // namespace
 
 void bind_shot(py::module_& m) {
@@ -358,8 +332,6 @@ void bind_shot(py::module_& m) {
           R"(Internal: use realcam.Shot. Returns the attributes of a Shot, and True if neither spp nor a noise goal is
 specified. changes: TOML text that overrides the file; options: values by key name, as on the command line. scene, lens:
 replace those of the file unless None. denoises: True if the picture will be denoised. device: meters the exposure.)");
-    m.def("_metadata", &metadata, "camera"_a, "settings"_a, "spp"_a, "seed"_a, "plan"_a, "denoiser"_a,
-          "Internal. Returns the metadata of an image file, text by name.");
 }
 
 }  // namespace realcam::bindings

@@ -23,7 +23,7 @@ py::dtype dtype_of(const SharedDeviceArray& array) {
     throw InputError("an array of unknown type");
 }
 
-Typed<"tuple[int, ...]", py::tuple> shape_of(const SharedDeviceArray& array) {
+Typed<"tuple[int, ...]", py::tuple> shape_tuple(const SharedDeviceArray& array) {
     return py::tuple(py::cast(array.shape()));
 }
 
@@ -49,12 +49,12 @@ Typed<"NDArray[Any]"> host_copy_of(const SharedDeviceArray& array, const Typed<"
 
 Typed<"dict[str, Any]", py::dict> interface_of(const SharedDeviceArray& array) {
     const auto address = reinterpret_cast<std::uintptr_t>(array.data());
-    return py::dict("version"_a = 3, "shape"_a = shape_of(array), "typestr"_a = dtype_of(array).attr("str"),
+    return py::dict("version"_a = 3, "shape"_a = shape_tuple(array), "typestr"_a = dtype_of(array).attr("str"),
                     "data"_a = py::make_tuple(address, false), "strides"_a = py::none(), "stream"_a = py::none());
 }
 
 std::string repr_of(const SharedDeviceArray& array) {
-    return "realcam.DeviceArray(shape=" + py::repr(shape_of(array)).cast<std::string>() +
+    return "realcam.DeviceArray(shape=" + py::repr(shape_tuple(array)).cast<std::string>() +
            ", dtype=" + py::str(dtype_of(array)).cast<std::string>() + ", device=\"" + device_of(array) + "\")";
 }
 
@@ -66,7 +66,7 @@ void bind_device_array(py::module_& m) {
         R"(Array in a GPU's memory, in C order. torch.from_dlpack, cupy.from_dlpack, torch.as_tensor and cupy.asarray
 share its memory without a copy, on any stream; numpy.asarray copies it to the host. The memory is freed when the
 last array that shares it is deleted.)")
-        .def_property_readonly("shape", &shape_of, "Length of each dimension.")
+        .def_property_readonly("shape", &shape_tuple, "Length of each dimension.")
         .def_property_readonly("dtype", &dtype_of, "numpy.dtype: float64, float32, int32 or uint8.")
         .def_property_readonly("device", &device_of, "Name of the GPU, as `device` of Lens.trace: \"cuda:0\".")
         .def("numpy", &numpy_of, "Returns a copy in the host's memory. Raises DeviceError.")

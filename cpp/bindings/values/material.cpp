@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 
 #include "../../io/files/regular_file.hpp"
+#include "../../scene/scene_checks.hpp"
 #include "arrays.hpp"
 #include "value_compare.hpp"
 
@@ -70,6 +71,14 @@ void append_rgba(std::vector<Value>& rgba, const py::array& band, py::ssize_t ch
 }
 
 }  // namespace
+
+void validate(const PythonMaterial& material) {
+    for (const auto& texture : material.textures)
+        if (texture) validate(*texture);
+    for (const auto member : kMaterialTextures)
+        if ((material.values.*member).texture != -1)
+            throw InputError("a material outside of a scene must not have texture indices");
+}
 
 PythonMaterial material_of(const std::shared_ptr<const Scene>& scene, std::size_t index) {
     PythonMaterial material{

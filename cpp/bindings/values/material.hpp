@@ -18,6 +18,10 @@ struct PythonMaterial {
     std::array<std::shared_ptr<const Texture>, kMaterialTextures.size()> textures;
 };
 
+/// Throws InputError if a texture is invalid or a texture index is set. Other values are checked together with the
+/// scene that receives the material.
+void validate(const PythonMaterial& material);
+
 /// Returns a copy of a scene's material. Its textures are shared with the scene, which they keep alive.
 PythonMaterial material_of(const std::shared_ptr<const Scene>& scene, std::size_t index);
 

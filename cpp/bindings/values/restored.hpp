@@ -1,57 +1,108 @@
 #pragma once
 #include <pybind11/numpy.h>
 
-#include <algorithm>
 #include <concepts>
 #include <cstring>
+#include <initializer_list>
 #include <type_traits>
 #include <vector>
 
+#include "../../camera/film/camera.hpp"
+#include "../../camera/film/camera_key.hpp"
+#include "../../camera/film/shake.hpp"
+#include "../../camera/sensor/sensor.hpp"
 #include "../../cuda/device/shared_device_array.hpp"
 #include "../../error.hpp"
+#include "../../optics/prescription/coating_checks.hpp"
+#include "../../optics/prescription/form_checks.hpp"
+#include "../../optics/prescription/lens_checks.hpp"
+#include "../../scene/scene_checks.hpp"
+#include "material.hpp"
 #include "value_compare.hpp"
 
 namespace realcam::bindings {
 
-// Validation of unpickled values: a pickle is untrusted input, so its values must satisfy the checks of the
-// constructors. Every pickled type must declare its check, or the code does not compile.
-
-/// `static void check(const T&)` throws a realcam::Error if a value is invalid although each of its members is valid.
-/// Declared for every struct that is pickled.
-template <class T>
-struct RestoredCheck;
-
-/// For structs whose members have no joint constraint, or are checked by the enclosing struct.
-struct AnyMembers {
-    template <class T>
-    static void check(const T&) {}
-};
+// Validation of unpickled values. A pickle is untrusted input: it holds the members of a value, and these are checked
+// as the arguments of a constructor are.
 
 template <class T, class... Types>
 concept OneOf = (std::same_as<T, Types> || ...);
 
-/// `value`: the last enumerator of an enumeration that starts at 0 and has no gaps.
+/// The last enumerator of an enumeration that starts at 0 and has no gaps. It has no value for enumerations that are
+/// missing below, so that code that reads them does not compile.
 template <class E>
-struct LastEnumerator;
-
-template <auto last>
-struct LastIs {
-    static constexpr auto value = last;
-};
+inline constexpr E kLastEnumerator;
+template <>
+inline constexpr auto kLastEnumerator<Glass::Formula> = Glass::Formula::table;
+template <>
+inline constexpr auto kLastEnumerator<CoatingKind> = CoatingKind::reflectance;
+template <>
+inline constexpr auto kLastEnumerator<SurfaceType> = SurfaceType::aperture;
+template <>
+inline constexpr auto kLastEnumerator<BaseForm> = BaseForm::toroid;
+template <>
+inline constexpr auto kLastEnumerator<ApertureOutline> = ApertureOutline::polygon;
+/// Enumerations of two variants of sag terms, such as the two orders of Zernike terms; see kFormTerms.
+template <class E>
+    requires(is_form_variant<E>)
+inline constexpr E kLastEnumerator<E> = E{1};
+template <>
+inline constexpr auto kLastEnumerator<RayStatus> = RayStatus::bad_input;
+template <>
+inline constexpr auto kLastEnumerator<CameraModel> = CameraModel::full_lens_double;
+template <>
+inline constexpr auto kLastEnumerator<CameraKeyInterpolation> = CameraKeyInterpolation::step;
+template <>
+inline constexpr auto kLastEnumerator<MaterialModel> = MaterialModel::metallic_roughness;
+template <>
+inline constexpr auto kLastEnumerator<FresnelTerm> = FresnelTerm::physical;
+template <>
+inline constexpr auto kLastEnumerator<TextureEncoding> = TextureEncoding::linear;
+template <>
+inline constexpr auto kLastEnumerator<TextureWrap> = TextureWrap::mirror;
+template <>
+inline constexpr auto kLastEnumerator<TextureFilter> = TextureFilter::nearest;
 
 /// True if a type's strings are names or contents of files, which need not be UTF-8.
 template <class T>
-inline constexpr bool has_names_of_files = false;
+inline constexpr bool has_names_of_files = OneOf<T, Scene, Instance, SceneCamera, PythonMaterial>;
 
 /// Throws InputError if a condition on unpickled data does not hold.
 inline void require_restored(bool condition) {
     if (!condition) throw InputError("it is damaged");
 }
 
-template <class E, class Number>
-constexpr bool is_enumerator(Number number) {
-    using Plain = std::underlying_type_t<E>;
-    return number >= 0 && number <= static_cast<Plain>(LastEnumerator<E>::value);
+template <class E>
+constexpr bool is_enumerator(std::int64_t number) {
+    return number >= 0 && number <= static_cast<std::int64_t>(kLastEnumerator<E>);
+}
+
+/// Creates a glass through its public constructors. Throws InputError.
+inline Glass glass_from_parts(Glass::Parts parts) {
+    const auto made = [&] {
+        if (parts.formula == Glass::Formula::table) return Glass::table(std::move(parts.points));
+        if (parts.formula == Glass::Formula::cauchy) return Glass::cauchy(std::move(parts.coefficients));
+        require_restored(parts.coefficients.size() % 2 == 0);
+        std::vector<Glass::SellmeierTerm> terms;
+        for (std::size_t i = 0; i + 1 < parts.coefficients.size(); i += 2)
+            terms.push_back({parts.coefficients[i], parts.coefficients[i + 1]});
+        return Glass::sellmeier(terms);
+    };
+    Glass glass = made();
+    glass.label = std::move(parts.label);
+    return glass;
+}
+
+/// Makes the checks of a type's constructor: validate(value), if the type has it. Throws a realcam::Error. Types
+/// without it have no constraint on several members, or are checked with the value that contains them.
+template <class T>
+void check_made(const T& value) {
+    if constexpr (std::same_as<T, LensSystem>)
+        validate_with_film(value);
+    else if constexpr (std::same_as<T, Assembly>)
+        SceneChecks().check(value);
+    else if constexpr (!std::same_as<T, Scene> && requires { validate(value); })  // an Assembly checks its Scenes
+        validate(value);
 }
 
 /// Checks a value whose bytes were copied from a pickle. The bytes of a bool or enumerator must be checked before the
@@ -72,34 +123,33 @@ void check_copied(const T& value) {
         for (const auto& item : value) check_copied(item);
     } else {
         std::apply([](const auto&... member) { (check_copied(member), ...); }, members(value));
-        RestoredCheck<T>::check(value);
+        check_made(value);
     }
 }
 
-/// Required type and shape of an array in a pickled result.
-struct ExpectedArray {
-    char kind;  ///< numpy's kind character: f floats, c complex numbers, i integers
-    std::vector<pybind11::ssize_t> shape;
-};
-
-/// Throws InputError if the object is not a numpy array or DeviceArray of that kind and shape.
-inline void check_restored_array(const pybind11::object& array, const ExpectedArray& expected) {
+/// Returns the shape of a numpy array or DeviceArray. Throws InputError for another object.
+inline std::vector<pybind11::ssize_t> shape_of(const pybind11::object& array) {
     namespace py = pybind11;
     require_restored(py::isinstance<py::array>(array) || py::isinstance<SharedDeviceArray>(array));
-    const py::object type = array.attr("dtype");
-    require_restored(py::dtype::from_args(type).kind() == expected.kind && type.attr("isnative").cast<bool>());
-    const py::tuple shape = array.attr("shape");
-    require_restored(shape.size() == expected.shape.size());
-    for (std::size_t i = 0; i < shape.size(); ++i) require_restored(shape[i].cast<py::ssize_t>() == expected.shape[i]);
+    return array.attr("shape").cast<std::vector<py::ssize_t>>();
 }
 
-/// Returns the length of the first dimension. Throws InputError if the object is not an array or has no dimension.
-inline pybind11::ssize_t restored_length(const pybind11::object& array) {
-    namespace py = pybind11;
-    require_restored(py::isinstance<py::array>(array) || py::isinstance<SharedDeviceArray>(array));
-    const py::tuple shape = array.attr("shape");
+/// Returns the length of an array's first dimension. Throws InputError if the object is not an array or has none.
+inline pybind11::ssize_t length_of(const pybind11::object& array) {
+    const std::vector<pybind11::ssize_t> shape = shape_of(array);
     require_restored(!shape.empty());
-    return shape[0].cast<py::ssize_t>();
+    return shape[0];
+}
+
+/// Throws InputError if one of the objects is not an array of this kind (numpy's character: f floats, c complex
+/// numbers, i integers) and shape.
+inline void check_arrays(char kind, const std::vector<pybind11::ssize_t>& shape,
+                         std::initializer_list<pybind11::object> arrays) {
+    for (const pybind11::object& array : arrays) {
+        require_restored(shape_of(array) == shape);
+        const pybind11::object type = array.attr("dtype");
+        require_restored(pybind11::dtype::from_args(type).kind() == kind && type.attr("isnative").cast<bool>());
+    }
 }
 
 }  // namespace realcam::bindings

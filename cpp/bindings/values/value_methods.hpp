@@ -23,10 +23,17 @@ void def_pickle(pybind11::class_<T, Options...>& type, const State& state, const
     type.def_static("_restored", restored, "state"_a);
 }
 
-/// Defines ==, copy, deepcopy and pickle for a class. Unpickled values are checked (restored.hpp). Copies are made
-/// through the pickle state: for results whose arrays the user may modify.
-template <class T, class... Options>
-void def_result(pybind11::class_<T, Options...>& type) {
+/// Check of a class whose members are all that has to be checked.
+struct MembersOnly {
+    template <class T>
+    void operator()(const T&) const {}
+};
+
+/// Defines ==, copy, deepcopy and pickle for a class. Unpickled values are checked (restored.hpp), and by
+/// `check(value)`, which throws a realcam::Error, for results of calculations that have no public constructor. Copies
+/// are made through the pickle state: for results whose arrays the user may modify.
+template <class T, class... Options, class Check = MembersOnly>
+void def_result(pybind11::class_<T, Options...>& type, const Check& check = {}) {
     namespace py = pybind11;
     using namespace py::literals;
     type.def(
@@ -38,7 +45,11 @@ void def_result(pybind11::class_<T, Options...>& type) {
         "other"_a);
     def_pickle(
         type, [](const py::object& self) { return StateWriter(self).write(self.cast<const T&>()); },
-        [](const py::object& state) { return StateReader().read_value<T>(state); });
+        [check](const py::object& state) {
+            T value = StateReader().read_value<T>(state);
+            check(value);
+            return value;
+        });
 }
 
 /// Defines copy and deepcopy of an immutable class, which return the object itself.
@@ -50,16 +61,16 @@ void def_copy(pybind11::class_<T, Options...>& type) {
 }
 
 /// Like def_result, for immutable values.
-template <class T, class... Options>
-void def_value(pybind11::class_<T, Options...>& type) {
-    def_result(type);
+template <class T, class... Options, class... Check>
+void def_value(pybind11::class_<T, Options...>& type, const Check&... check) {
+    def_result(type, check...);
     def_copy(type);
 }
 
 /// Like def_value, and defines hash(): for values small enough to be dict keys.
-template <class T, class... Options>
-void def_hashable_value(pybind11::class_<T, Options...>& type) {
-    def_value(type);
+template <class T, class... Options, class... Check>
+void def_hashable_value(pybind11::class_<T, Options...>& type, const Check&... check) {
+    def_value(type, check...);
     type.def("__hash__", [](const T& self) { return hash_of(self); });
 }
 

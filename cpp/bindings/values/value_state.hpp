@@ -6,12 +6,12 @@
 
 #include "../../io/text/printable.hpp"
 #include "arrays.hpp"
-#include "restored_values.hpp"
+#include "restored.hpp"
 
 namespace realcam::bindings {
 
-// Pickle state of a value: numbers, bytes, tuples, and numpy arrays for large members, which pickle protocol 5 can
-// transfer without a copy.
+// Pickle state of a value: its members, from which its constructor makes it, as numbers, bytes, tuples, and numpy
+// arrays for large members, which pickle protocol 5 can transfer without a copy.
 
 /// Must be incremented whenever a value written by an older version would be misread.
 inline constexpr int kStateFormat = 1;
@@ -89,7 +89,7 @@ private:
 };
 
 /// Reads the state written by StateWriter. Throws a realcam::Error for any other state, and pybind11's errors if a
-/// Python object has another type. Results satisfy the checks of the constructors (restored.hpp).
+/// Python object has another type. The values satisfy the checks of their constructors (restored.hpp).
 class StateReader {
 public:
     /// Reads a state into `value`.
@@ -120,7 +120,7 @@ public:
     template <class T>
     T read_value(const pybind11::handle& state) {
         if constexpr (std::same_as<T, Glass>) {
-            return restored_glass(read_value<Glass::Parts>(state));
+            return glass_from_parts(read_value<Glass::Parts>(state));
         } else {
             T value{};
             read(value, state);
@@ -156,7 +156,7 @@ private:
         const bool outer_any_bytes = std::exchange(any_bytes_, any_bytes_ || has_names_of_files<T>);
         (read(std::get<i>(targets), items[i]), ...);
         any_bytes_ = outer_any_bytes;
-        RestoredCheck<T>::check(value);
+        check_made(value);
     }
 
     template <class T>

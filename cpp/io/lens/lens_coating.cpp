@@ -101,7 +101,7 @@ Coating read_coating(const TomlTable& table, const std::string& name, const std:
     if (table.find("label")) coating.name = table.line("label");
     if (table.find("metal_label")) coating.metal.label = table.line("metal_label");
     try {
-        check_coating(coating);
+        validate(coating);
     } catch (const InputError& error) {
         table.fail(error.what());
     }

@@ -24,8 +24,7 @@ LensSystem edited_in_all_states(const LensSystem& lens, Edit&& edit) {
     for (int p = 0; p < static_cast<int>(lens.zoom.positions.size()); ++p)
         states.push_back(edit(at_zoom_position(lens, p)));
     if (!states.empty()) edited.zoom = zoom_of(edited, lens.zoom, states);
-    validate(edited);
-    if (const std::string why = film_distance_error(edited); !why.empty()) throw LensFileError(why);
+    validate_with_film(edited);
     return edited;
 }
 

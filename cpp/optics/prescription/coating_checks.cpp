@@ -27,22 +27,28 @@ void check_material(const CoatingMaterial& material, const std::string& what) {
                          (std::isnan(n) ? "" : "; it is " + std::to_string(n)));
 }
 
+/// Throws InputError if the thickness or the material of a layer is invalid. `what` names the layer in the message.
+void check_layer(const CoatingLayer& layer, const std::string& what) {
+    check_material(layer.material, what);
+    if (!(layer.thickness_nm >= 0 && layer.thickness_nm <= kMaxLayerThickness_nm))
+        throw InputError("the thickness of " + what + " must lie between 0 and 1e6 nm");
+}
+
 }  // namespace
 
-void check_coating(const Coating& coating) {
+void validate(const CoatingLayer& layer) {
+    check_layer(layer, "layer 1");
+}
+
+void validate(const Coating& coating) {
     if (coating.layers.size() > kMaxCoatingLayers)
         throw InputError("the coating has " + std::to_string(coating.layers.size()) + " layers; at most " +
                          std::to_string(kMaxCoatingLayers) + " are supported");
-    for (std::size_t i = 0; i < coating.layers.size(); ++i) {
-        const std::string what = "layer " + std::to_string(i + 1);
-        check_material(coating.layers[i].material, what);
-        const double thickness = coating.layers[i].thickness_nm;
-        if (!(thickness >= 0 && thickness <= kMaxLayerThickness_nm))
-            throw InputError("the thickness of " + what + " must lie between 0 and 1e6 nm");
-    }
+    for (std::size_t i = 0; i < coating.layers.size(); ++i)
+        check_layer(coating.layers[i], "layer " + std::to_string(i + 1));
     const bool has_layers = coating.kind == CoatingKind::layers || coating.kind == CoatingKind::metal;
     if (!has_layers && !coating.layers.empty()) throw InputError("this kind of coating cannot have layers");
-    if (coating.kind == CoatingKind::metal) check_material(coating.metal, "the metal");
+    check_material(coating.metal, "the metal");
     if (!(coating.reflectance >= 0 && coating.reflectance <= 1))
         throw InputError("the reflectance of a mirror must lie between 0 and 1");
 }

@@ -123,4 +123,11 @@ std::string form_error(const Surface& surface) {
                : "does not extend over its whole clear aperture: its radii, conics or terms end it before";
 }
 
+void validate(const Surface& surface) {
+    if (!std::isfinite(surface.curvature)) throw InputError("a surface's radius of curvature must not be 0");
+    if (surface.aspheric.size() > static_cast<std::size_t>(kMaxAsphericTerms))
+        throw InputError("a surface has more aspheric coefficients than " + std::to_string(kMaxAsphericTerms));
+    if (const std::string why = form_error(surface); !why.empty()) throw InputError("a surface " + why);
+}
+
 }  // namespace realcam

@@ -90,7 +90,7 @@ void check_material(const Surface& s, std::size_t i, double design_wavelength_nm
 /// Checks the coating, and that it suits the type of the surface.
 void check_surface_coating(const Surface& s, std::size_t i) {
     try {
-        check_coating(s.coating);
+        validate(s.coating);
         check_coating_fits(s);
     } catch (const InputError& error) {
         fail(i, error.what());
@@ -214,6 +214,14 @@ void check_zoom(const LensSystem& lens) {
 }
 
 void validate(const LensSystem& lens) {
+    // First, because refractive indices are evaluated at this wavelength, and messages print it as an integer.
+    if (!(lens.wavelength_nm >= 100 && lens.wavelength_nm <= 20000))
+        throw LensFileError("the design wavelength must lie between 100 and 20000 nm");
+    if (!(lens.focusing.nearest_mm >= 0))
+        throw LensFileError("the nearest focus distance must be 0 (limited only by the optics) or more");
+    if (!(lens.stop_semi_diameter >= 0 && lens.stop_semi_diameter <= kLongest))
+        throw LensFileError("the radius of the lens's open stop must be a length of 0 or more");
+    if (std::isnan(lens.focus_distance)) throw LensFileError("the focus distance must be a number");
     check_surfaces(lens);
     check_iris(lens.iris);
     check_film_size(lens);
@@ -233,6 +241,11 @@ std::string film_distance_error(const LensSystem& lens) {
                " behind the last vertex of the lens, cuts through its last face; it must lie behind that face's rim "
                "(unless allow_overlap is set)";
     return "";
+}
+
+void validate_with_film(const LensSystem& lens) {
+    validate(lens);
+    if (const std::string why = film_distance_error(lens); !why.empty()) throw LensFileError(why);
 }
 
 }  // namespace realcam

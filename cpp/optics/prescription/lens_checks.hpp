@@ -39,7 +39,8 @@ void check_focusing(const LensSystem& lens);
 /// Checks that the lens can be built in every zoom position.
 void check_zoom(const LensSystem& lens);
 
-/// Makes all of these checks: of everything except the film distance, which may not be known yet.
+/// Makes all of these checks, and checks the design wavelength and the settings of focus and stop: everything except
+/// the film distance, which may not be known yet.
 void validate(const LensSystem& lens);
 
 /// Throws LensFileError if the film's radius of curvature is too short for a film that reaches out to `corner` from the
@@ -48,5 +49,8 @@ void check_film_reach(const LensSystem& lens, double corner);
 
 /// Returns the reason why the film distance is invalid; empty if it is valid.
 std::string film_distance_error(const LensSystem& lens);
+
+/// Like validate(lens), and checks the film distance.
+void validate_with_film(const LensSystem& lens);
 
 }  // namespace REALCAM_NAMESPACE

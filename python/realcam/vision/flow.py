@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 from .._core import Camera, InputError, Scene
 from ..files import check_target, write_whole
 from ..image import Image
-from ..pickling import set_checked_state
+from ..pickling import PickledByFields
 from ..render import render
 
 Array = NDArray[np.float64]
@@ -26,7 +25,7 @@ _FLO_UNKNOWN = 1e10  # the format's value for unknown flow
 
 
 @dataclass(frozen=True, eq=False)
-class OpticalFlow:
+class OpticalFlow(PickledByFields):
     """Displacement of each pixel's object point in the next picture.
 
     pixels: (H, W, 2) float32, displacement to the right and down, in pixels; NaN if no light of the scene reaches the
@@ -45,9 +44,6 @@ class OpticalFlow:
             raise InputError("pixels must be an array of (H, W, 2) float32")
         if not isinstance(visible, np.ndarray) or visible.dtype != bool or visible.shape != pixels.shape[:2]:
             raise InputError("visible must be an array of (H, W) bool, for the pixels' H and W")
-
-    def __setstate__(self, state: Any) -> None:
-        set_checked_state(self, state, repr)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, OpticalFlow):

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from .._core import Camera, InputError, RenderSettings, Scene, Sensor
 from ..files import write_whole
 from ..image import Image
-from ..pickling import set_checked_state
+from ..pickling import PickledByFields
 from ..raw_image import RawImage
 from ..settings import settings_of
 from ..shot import Shot
@@ -35,7 +35,7 @@ UNMOVED: Matrix = tuple(tuple(row) for row in np.eye(4).tolist())
 
 
 @dataclass(frozen=True)
-class RigCamera:
+class RigCamera(PickledByFields):
     """A camera of a rig, with its sensor and filter.
 
     camera: posed in the frame of the rig. sensor: makes raw images from the film's exposure; None: no raw images.
@@ -62,9 +62,6 @@ class RigCamera:
         if table and self.sensor is None:
             raise InputError("spectral_filter: the camera has no sensor for which light could be filtered")
         self.filtered_sensor  # noqa: B018 - raises InputError for an invalid filter
-
-    def __setstate__(self, state: Any) -> None:
-        set_checked_state(self, state, hash)
 
     def __repr__(self) -> str:
         with_filter = " with a filter" if self.spectral_filter else ""
@@ -98,7 +95,7 @@ class RigCamera:
 
 
 @dataclass(frozen=True)
-class Rig:
+class Rig(PickledByFields):
     """Cameras that are fixed to one another, by their names.
 
     rig = rc.Rig.stereo(camera, baseline_m=0.12)
@@ -133,9 +130,6 @@ class Rig:
 
     def __hash__(self) -> int:
         return hash((tuple(self.members.items()), self.scene_from_rig, self.times_s))
-
-    def __setstate__(self, state: Any) -> None:
-        set_checked_state(self, state, hash)
 
     def __repr__(self) -> str:
         return f"<realcam.Rig of {len(self.members)} cameras: {', '.join(self.members):.60}>"
