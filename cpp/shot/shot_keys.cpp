@@ -141,6 +141,10 @@ void to_effects(Table t, Key key, Request r) {
     of_names(t, key, [&] { r.settings.effects = effects_named(names); });
 }
 
+void to_variants(Table t, Key key, Request r) {
+    r.variants = t.texts(key.name);
+}
+
 void to_layers(Table t, Key key, Request r) {
     const std::vector<std::string> names = t.texts(key.name);
     of_names(t, key, [&] { r.settings.layers = layers_named(names); });
@@ -210,7 +214,7 @@ std::vector<ShotKey> all_keys() {
         {"resolution", "--resolution", kCamera, "WxH", size, "a width and a height in pixels, such as 960x640",
          "Number of pixels", "960 along the longer side", {}, to_resolution},
         {"camera", "--camera", kCamera, "NAME", text, "the name of a camera of the scene, or none,",
-         "glTF camera whose position, direction and motion are used, by the name of its node; or none",
+         "Camera of a glTF or USD scene whose position, direction and motion are used, by its name; or none",
          "the first, without position and direction", {"position_m", "look_at_m", "pose"}, to_text<&R::view, &V::camera>},
         {"position_m", "--position", kCamera, "X,Y,Z", three_numbers, "three numbers, such as 0,1.5,-2",
          "Position of the film's centre, in metres", "in front of the scene, so that it fills the film: docs/scenes.md",
@@ -250,6 +254,8 @@ std::vector<ShotKey> all_keys() {
          to_named<model_named, &R::model>},
         {"scale", "--scale", kScene, "METRES", number, kNumber, "Metres per unit of the scene's file", "1", {},
          to_number<&R::scale>},
+        {"variants", "--variants", kScene, "SELECTIONS", names, "variants such as /Chair{color=red}",
+         "Variants of a USD stage, separated by commas, such as /Chair{color=red}", "the stage's own", {}, to_variants},
         {"texture", nullptr, kScene, "FILE", text, "a picture", "Picture that textures all materials",
          "the scene's own", {}, to_file<&R::texture>},
         {"environment", "--environment", kScene, "CD_M2|FILE", number_or_file, "a picture, or a number of cd/m^2",
