@@ -96,7 +96,11 @@ def _resampled(pixels: Pixels, rotation: Pixels, height: int, width: int) -> Pix
     longitude = 2 * np.pi * ((np.arange(width) + 0.5) / width - 0.5)
     sine = np.sin(latitude)[:, None]
     directions = np.stack(
-        [sine * np.sin(longitude), np.broadcast_to(np.cos(latitude)[:, None], (height, width)), -sine * np.cos(longitude)],
+        [
+            sine * np.sin(longitude),
+            np.broadcast_to(np.cos(latitude)[:, None], (height, width)),
+            -sine * np.cos(longitude),
+        ],
         axis=-1,
     )
     local = directions @ rotation  # the inverse of a rotation, applied to column vectors

@@ -75,9 +75,7 @@ class Materials:
             self._known[key] = self._translated(material, surface, light)
         return self._known[key]
 
-    def of_light(
-        self, name: str, radiance: tuple[float, ...], texture: Sampled | None = None
-    ) -> TranslatedMaterial:
+    def of_light(self, name: str, radiance: tuple[float, ...], texture: Sampled | None = None) -> TranslatedMaterial:
         """Returns a black material that emits, in cd/m^2, from the front. texture: factor on the radiance."""
         key = (name, radiance, texture)
         if key not in self._known:
@@ -160,7 +158,9 @@ class _Network:
         if not output.startswith("outputs:"):
             value = attribute.Get(self._opened.time)
             if attribute.ValueMightBeTimeVarying():
-                self._opened.notices.add(attribute.GetPath(), "its values over time are left out; the first one is used")
+                self._opened.notices.add(
+                    attribute.GetPath(), "its values over time are left out; the first one is used"
+                )
             return default if value is None else value
         kind = str(shader.GetIdAttr().Get() or "")
         if kind == "UsdUVTexture":

@@ -94,9 +94,7 @@ def _primvar(opened: OpenStage, primvar: UsdGeom.Primvar, surface: Surface) -> V
     return _values(opened, primvar.GetAttr(), rows, str(primvar.GetInterpolation()), surface)
 
 
-def _normals(
-    opened: OpenStage, mesh: UsdGeom.Mesh, api: UsdGeom.PrimvarsAPI, surface: Surface
-) -> Values | None:
+def _normals(opened: OpenStage, mesh: UsdGeom.Mesh, api: UsdGeom.PrimvarsAPI, surface: Surface) -> Values | None:
     """Returns the authored normals, primvars:normals before normals; None if there are none, or they are no vectors."""
     primvar = api.GetPrimvar("normals")
     if primvar and primvar.HasValue():
@@ -126,9 +124,7 @@ def _values(
     return Values(rows.reshape(expected, -1), domain)
 
 
-def _with_faces(
-    opened: OpenStage, prim: Usd.Prim, surface: Surface, keeps: NDArray[np.bool_], notice: str
-) -> Surface:
+def _with_faces(opened: OpenStage, prim: Usd.Prim, surface: Surface, keeps: NDArray[np.bool_], notice: str) -> Surface:
     if keeps.all():
         return surface
     opened.notices.add(prim.GetPath(), notice)
@@ -139,7 +135,9 @@ def _subdivided(opened: OpenStage, mesh: UsdGeom.Mesh, surface: Surface, scheme:
     if not len(surface.counts):
         return surface
     if scheme == "loop" and (surface.counts != 3).any():
-        opened.notices.add(mesh.GetPath(), "subdivisionScheme loop: expected triangles; its faces are cut into triangles")
+        opened.notices.add(
+            mesh.GetPath(), "subdivisionScheme loop: expected triangles; its faces are cut into triangles"
+        )
         surface = _cut(surface)
     boundary = str(mesh.GetInterpolateBoundaryAttr().Get(opened.time))
     if boundary == "none":
@@ -167,9 +165,7 @@ def _cut(surface: Surface) -> Surface:
         for name, v in surface.values.items()
     }
     count = len(triangles.corners)
-    return Surface(
-        surface.points, np.full(count, 3), surface.corners[used], surface.faces[triangles.face_rows], values
-    )
+    return Surface(surface.points, np.full(count, 3), surface.corners[used], surface.faces[triangles.face_rows], values)
 
 
 def _creases(opened: OpenStage, mesh: UsdGeom.Mesh) -> tuple[NDArray[Any], NDArray[Any]]:

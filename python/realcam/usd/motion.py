@@ -12,7 +12,7 @@ from .glb import Glb, Json
 from .stage import OpenStage
 
 _MAX_KEYS = 20_000  # of a prim
-_TOLERANCE = 1e-4  # of a matrix between keys, relative to its largest element
+_TOLERANCE = 1e-3  # of a matrix between keys, relative to its largest element
 _MAX_HALVINGS = 6  # of the time between two samples
 
 Trs = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]
@@ -66,7 +66,7 @@ def _keys(opened: OpenStage, xformable: UsdGeom.Xformable, is_held: bool) -> tup
 
     def at(time: float) -> tuple[Gf.Matrix4d, Trs]:
         matrix = _local(xformable, Usd.TimeCode(time))
-        return matrix, _decomposed(opened, prim, matrix)
+        return matrix, _decomposed(matrix)
 
     times: list[float] = []
     rows: list[Trs] = []
@@ -82,7 +82,9 @@ def _keys(opened: OpenStage, xformable: UsdGeom.Xformable, is_held: bool) -> tup
         add_between(middle, trs, end, last, halvings - 1)
 
     for time in samples:
-        _, trs = at(time)
+        matrix, trs = at(time)
+        if _has_shear(matrix):  # between samples, matrices that USD interpolates linearly always have some
+            opened.notices.add(prim.GetPath(), "the shear of its moving transform is left out")
         if times and not is_held:
             add_between(times[-1], rows[-1], time, trs, _MAX_HALVINGS)
         times.append(time)
@@ -90,18 +92,23 @@ def _keys(opened: OpenStage, xformable: UsdGeom.Xformable, is_held: bool) -> tup
     return times, rows
 
 
-def _decomposed(opened: OpenStage, prim: Usd.Prim, matrix: Gf.Matrix4d) -> Trs:
-    """Returns translation, rotation (x, y, z, w) and scale of a matrix; shear is left out, with a notice."""
+def _decomposed(matrix: Gf.Matrix4d) -> Trs:
+    """Returns translation, rotation (x, y, z, w) and scale of a matrix without shear."""
     rows = np.array(matrix)[:3, :3]
     scale = np.linalg.norm(rows, axis=1)
     if np.linalg.det(rows) < 0:
         scale[0] = -scale[0]
     axes = rows / np.where(scale != 0, scale, 1)[:, None]
-    if np.abs(axes @ axes.T - np.diag(np.diag(axes @ axes.T))).max() > 1e-5:
-        opened.notices.add(prim.GetPath(), "the shear of its moving transform is left out")
     quaternion = Gf.Matrix3d(*map(float, axes.ravel())).GetOrthonormalized(False).ExtractRotation().GetQuat()
     rotation = np.array([*quaternion.GetImaginary(), quaternion.GetReal()])
     return np.array(matrix)[3, :3], rotation, scale
+
+
+def _has_shear(matrix: Gf.Matrix4d) -> bool:
+    rows = np.array(matrix)[:3, :3]
+    axes = rows / np.maximum(np.linalg.norm(rows, axis=1), 1e-300)[:, None]
+    products = axes @ axes.T
+    return bool(np.abs(products - np.diag(np.diag(products))).max() > 1e-4)
 
 
 def _halfway(first: Trs, last: Trs) -> NDArray[Any]:

@@ -154,4 +154,7 @@ class _Diagnostics:
         """Returns the warnings, without the places in memory that usd-core adds to them."""
         items = self._delegate.TakeCoalescedDiagnostics()
         texts = [" ".join(part.commentary.split()) for item in items for part in item.unsharedItems]
+        if any(".mtlx" in text for text in texts):
+            texts = [text for text in texts if ".mtlx" not in text]
+            texts.append("MaterialX files (.mtlx) are left out, which usd-core cannot read")
         return [re.sub(r" \([^()]* on stage @.*\)$", "", text)[:300] for text in texts]

@@ -1,4 +1,4 @@
-"""Subdivision surfaces: two levels of Catmull-Clark or Loop, with the vertices moved to their limit positions.
+"""Subdivision surfaces: up to two levels of Catmull-Clark or Loop, with the vertices moved to their limit positions.
 
 usd-core has no subdivision. The rules are those of Catmull and Clark (1978) and Loop (1987), with semi-sharp creases and
 corners of DeRose, Kass and Truong (1998). Texture coordinates of corners are interpolated linearly.
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from .surface import Floats, Indices, Surface, Values
 
 LEVELS = 2
-MAX_FACES = 4_000_000  # of a mesh after subdivision; a mesh with more has fewer levels
+MAX_FACES = 200_000  # of a mesh after subdivision; a mesh that would have more gets fewer levels
 INFINITE = 10.0  # sharpness from which a crease or corner stays sharp at all levels
 
 
@@ -249,9 +249,7 @@ def _loop(surface: Surface, edges: _Edges, corner_values: Floats) -> _Refined:
         elif v.domain == "constant":
             values[name] = v
     values.update(_point_values(new_rows, names))
-    refined = Surface(
-        new_rows[:, :3], np.full(len(children), 3), children.ravel(), surface.faces[parents], values
-    )
+    refined = Surface(new_rows[:, :3], np.full(len(children), 3), children.ravel(), surface.faces[parents], values)
     middles = point_count + np.arange(edge_count)
     creases = np.vstack([np.stack([edges.ends[:, k], middles], axis=-1) for k in (0, 1)])
     crease_values = np.tile(_weaker(edges.sharpness), 2)

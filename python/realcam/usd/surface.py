@@ -95,19 +95,16 @@ def triangulated(surface: Surface) -> Triangles:
 def _concave_faces(surface: Surface, starts: Indices) -> NDArray[np.bool_]:
     """Returns, for each face, True if it has a reflex corner."""
     counts = surface.counts
+    if (counts <= 3).all():
+        return np.zeros(len(counts), bool)
     points = np.asarray(surface.points, np.float64)[surface.corners]
-    index = np.arange(len(surface.corners))
-    face = np.repeat(np.arange(len(counts)), counts)
-    begin, size = starts[face], counts[face]
-    local = index - begin
+    size, begin = np.repeat(counts, counts), np.repeat(starts, counts)
+    local = np.arange(len(points)) - begin
     before, after = begin + (local - 1) % size, begin + (local + 1) % size
     turns = np.cross(points - points[before], points[after] - points)
-    normals = np.zeros((len(counts), 3))
-    np.add.at(normals, face, np.cross(points, points[after]))
-    is_reflex = np.einsum("ij,ij->i", turns, normals[face]) < 0
-    concave = np.zeros(len(counts), bool)
-    np.logical_or.at(concave, face, is_reflex)
-    return concave & (counts > 3)
+    normals = np.add.reduceat(np.cross(points - points[begin], points[after] - points[begin]), starts)
+    is_reflex = np.einsum("ij,ij->i", turns, np.repeat(normals, counts, axis=0)) < 0
+    return np.logical_or.reduceat(is_reflex, starts) & (counts > 3)
 
 
 def _ears(points: Floats) -> list[tuple[int, int, int]]:
@@ -154,7 +151,11 @@ def vertex_arrays(surface: Surface, triangles: Triangles) -> tuple[Floats, dict[
         whole = table.view(np.dtype((np.void, table.dtype.itemsize * table.shape[1]))).ravel()
         _, first, inverse = np.unique(whole, return_index=True, return_inverse=True)
     else:
-        _, first, inverse = np.unique(points, return_index=True, return_inverse=True)
+        first = np.full(len(surface.points), -1)
+        first[points] = np.arange(len(points))
+        is_used = first >= 0
+        inverse = (np.cumsum(is_used) - 1)[points]
+        first = first[is_used]
     values = {name: row[first] for name, row in rows.items()}
     return surface.points[points[first]], values, inverse.reshape(-1, 3)
 
