@@ -19,7 +19,7 @@ HEADER = (
     '#usda 1.0\n(\n    metersPerUnit = 0.01\n    upAxis = "Z"\n    startTimeCode = 1\n    timeCodesPerSecond = 24\n)\n'
 )
 
-GEOMETRY = """def Xform "World" (variants = { string size = "small" } prepend variantSets = "size")
+GEOMETRY = """def Xform "World" (variants = { string size = "small" }; prepend variantSets = "size")
 {
     variantSet "size" = { "small" { double3 xformOp:scale = (1, 1, 1) } "large" { double3 xformOp:scale = (3, 2, 1) } }
     float xformOp:rotateZ.timeSamples = { 1: 0, 12: 200, 24: 360 }
@@ -111,10 +111,15 @@ LIGHTS = """def SphereLight "Lamp" (prepend apiSchemas = ["ShapingAPI"])
     float inputs:shaping:cone:angle = 40
     float inputs:shaping:cone:softness = 0.2
 }
-def RectLight "Panel" { float inputs:width = 2 bool inputs:enableColorTemperature = 1 float inputs:colorTemperature = 3000 }
+def RectLight "Panel"
+{
+    float inputs:width = 2
+    bool inputs:enableColorTemperature = 1
+    float inputs:colorTemperature = 3000
+}
 def CylinderLight "Tube" { float inputs:radius = 0.1 }
 def DistantLight "Sun" { float inputs:angle = 0.5 }
-def DomeLight "Sky" { float inputs:intensity = 3 asset inputs:texture:file = @seed.png@ }
+def DomeLight "Sky" { float inputs:intensity = 3; asset inputs:texture:file = @seed.png@ }
 def Camera "Main"
 {
     float focalLength = 35
@@ -125,8 +130,8 @@ def Camera "Main"
     double3 xformOp:translate.timeSamples = { 1: (0, 0, 9), 24: (1, 0, 9) }
     uniform token[] xformOpOrder = ["xformOp:translate"]
 }
-def Cylinder "Post" { token axis = "X" double height = 3 }
-def "Copy" (prepend references = </Post> instanceable = true) { }
+def Cylinder "Post" { token axis = "X"; double height = 3 }
+def "Copy" (prepend references = </Post>; instanceable = true) { }
 """
 
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")

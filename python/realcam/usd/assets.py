@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,7 +36,7 @@ def asset_of(opened: OpenStage, value: Sdf.AssetPath) -> Asset:
             return Asset(name, data=data)
         return Asset(name, str(opened.extracted(Path(name).name, data)))
     beside = Path(opened.path).absolute().parent / Path(name.replace("\\", "/")).name
-    return Asset(name, next((str(path) for path in (resolved, beside) if path and os.path.isfile(path)), ""))
+    return Asset(name, next((str(path) for path in (resolved, beside) if path and Path(path).is_file()), ""))
 
 
 def _packed_data(path: str) -> bytes:

@@ -13,7 +13,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux
 from .._core import Scene
 from ..image_file import read_environment
 from .assets import asset_of
-from .lights import Radiance, radiance_of
+from .lights import radiance_of
 from .stage import OpenStage
 
 Pixels = NDArray[np.floating[Any]]

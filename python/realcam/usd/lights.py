@@ -26,7 +26,7 @@ Radiance = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class AreaLight:
-    """A surface that emits from its front. radiance: in cd/m^2. is_textured: the surface has texture coordinates "st"."""
+    """A surface that emits from its front. radiance: in cd/m^2."""
 
     surface: Surface
     radiance: Radiance

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from pxr import Gf, Sdf, Usd, UsdShade
+from pxr import Gf, Sdf, UsdShade
 
 from .._core import ImageFileError
 from .assets import asset_of
@@ -46,7 +46,7 @@ class Primvar:
 
 @dataclass
 class TranslatedMaterial:
-    """A material of the document. index: of glTF's "materials". uv_names: primvars of its texture coordinates, in the
+    """A material of the document. index: of "materials". uv_names: primvars of its texture coordinates, in the
     order of glTF's sets. colours, opacities: names of the primvars that multiply its colour and opacity, or None.
     clamps: a texture has wrap mode black, and its edge is repeated instead."""
 
@@ -67,8 +67,8 @@ class Materials:
         self._known: dict[Any, TranslatedMaterial] = {}
 
     def of_material(self, material: UsdShade.Material | None, light: tuple[float, ...] | None) -> TranslatedMaterial:
-        """Returns a bound material. None: the material of gprims without one, whose colour is displayColor. light:
-        radiance of a mesh light, which replaces the material's own."""
+        """Returns a bound material. None: the matte material of prims without one, whose colour is displayColor.
+        light: radiance of a mesh light, which replaces the material's own."""
         key = (str(material.GetPath()) if material else "", light)
         if key not in self._known:
             surface = self._surface_of(material) if material else None
@@ -249,6 +249,7 @@ class _Builder:
         self, opened: OpenStage, pictures: Pictures, network: _Network, name: str, colours: str | None
     ) -> None:
         self._opened, self._pictures, self._network, self._name = opened, pictures, network, name
+        self._is_matte = colours is not None
         self.result = TranslatedMaterial(-1, colours=colours, opacities="displayOpacity" if colours else None)
 
     def json(self) -> Json:
@@ -269,6 +270,8 @@ class _Builder:
         self._emission(json, value("emissiveColor"))
         self._normal(json, value("normal"))
         self._clearcoat(json)
+        if self._is_matte:
+            json["extensions"]["KHR_materials_specular"] = {"specularFactor": 0}
         ior = self._constant("ior")
         if ior >= 1:
             json["extensions"]["KHR_materials_ior"] = {"ior": ior}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import tempfile
 from collections.abc import Sequence
@@ -80,7 +79,7 @@ def open_stage(path: str, variants: Sequence[str] = ()) -> OpenStage:
     notices = Notices()
     diagnostics = _Diagnostics()
     try:
-        stage = Usd.Stage.Open(os.path.abspath(path), Usd.Stage.LoadAll)
+        stage = Usd.Stage.Open(str(Path(path).absolute()), Usd.Stage.LoadAll)
         if stage is None:
             raise SceneFileError(f"{path}: is not a USD stage")
         opened = OpenStage(path, stage, notices)
@@ -112,7 +111,8 @@ def _check_layers(opened: OpenStage) -> None:
     layers = opened.stage.GetUsedLayers()
     if len(layers) > MAX_LAYERS:
         raise SceneFileError(f"{opened.path}: has {len(layers)} layers; at most {MAX_LAYERS} are read")
-    size = sum(Path(layer.realPath).stat().st_size for layer in layers if os.path.isfile(layer.realPath))
+    files = [Path(layer.realPath) for layer in layers if layer.realPath]
+    size = sum(file.stat().st_size for file in files if file.is_file())
     if size > MAX_BYTES:
         raise SceneFileError(f"{opened.path}: its layers are larger than {MAX_BYTES >> 30} GiB")
 

@@ -1,7 +1,7 @@
 """Subdivision surfaces: up to two levels of Catmull-Clark or Loop, with the vertices moved to their limit positions.
 
-usd-core has no subdivision. The rules are those of Catmull and Clark (1978) and Loop (1987), with semi-sharp creases and
-corners of DeRose, Kass and Truong (1998). Texture coordinates of corners are interpolated linearly.
+usd-core has no subdivision. The rules are those of Catmull and Clark (1978) and Loop (1987), with semi-sharp creases
+and corners of DeRose, Kass and Truong (1998). Texture coordinates of corners are interpolated linearly.
 """
 
 from __future__ import annotations

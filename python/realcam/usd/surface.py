@@ -28,9 +28,9 @@ class Values:
 class Surface:
     """Polygons in the frame of their prim.
 
-    points: (P, 3). counts: (F,) corners of each face. corners: (K,) indices of points, face after face, counterclockwise
-    as seen from outside. faces: (F,) index of the face in the stage's prim. values: primvars by name; "normals" are the
-    shading normals, and a surface without them is flat.
+    points: (P, 3). counts: (F,) corners of each face. corners: (K,) indices of points, face after face,
+    counterclockwise as seen from outside. faces: (F,) index of the face in the stage's prim. values: primvars by name;
+    "normals" are the shading normals, and a surface without them is flat.
     """
 
     points: Floats
