@@ -19,9 +19,9 @@ HEADER = (
     '#usda 1.0\n(\n    metersPerUnit = 0.01\n    upAxis = "Z"\n    startTimeCode = 1\n    timeCodesPerSecond = 24\n)\n'
 )
 
-GEOMETRY = """def Xform "World" (variants = { string size = "small" }; prepend variantSets = "size")
+GEOMETRY = """def Xform "World" (variants = { string size = "small"; }; prepend variantSets = "size")
 {
-    variantSet "size" = { "small" { double3 xformOp:scale = (1, 1, 1) } "large" { double3 xformOp:scale = (3, 2, 1) } }
+    variantSet "size" = { "small" { double3 xformOp:scale = (1, 1, 1); } "large" { double3 xformOp:scale = (3, 2, 1); } }
     float xformOp:rotateZ.timeSamples = { 1: 0, 12: 200, 24: 360 }
     uniform token[] xformOpOrder = ["xformOp:rotateZ", "xformOp:scale"]
     def Mesh "Polygons"
@@ -55,7 +55,7 @@ GEOMETRY = """def Xform "World" (variants = { string size = "small" }; prepend v
         quath[] orientations = [(1, 0, 0, 0), (0.7, 0, 0.7, 0), (1, 0, 0, 0)]
         float3[] scales = [(1, 1, 1), (1, 2, 3), (0.5, 0.5, 0.5)]
         int64[] invisibleIds = [2]
-        def Sphere "Ball" { double radius = 0.4 }
+        def Sphere "Ball" { double radius = 0.4; }
     }
 }
 """
@@ -100,7 +100,7 @@ LOOK = """def Scope "Look"
         }
     }
 }
-def Cube "Box" (prepend apiSchemas = ["MaterialBindingAPI"]) { rel material:binding = </Look/Paint> }
+def Cube "Box" (prepend apiSchemas = ["MaterialBindingAPI"]) { rel material:binding = </Look/Paint>; }
 """
 
 LIGHTS = """def SphereLight "Lamp" (prepend apiSchemas = ["ShapingAPI"])
@@ -117,9 +117,9 @@ def RectLight "Panel"
     bool inputs:enableColorTemperature = 1
     float inputs:colorTemperature = 3000
 }
-def CylinderLight "Tube" { float inputs:radius = 0.1 }
-def DistantLight "Sun" { float inputs:angle = 0.5 }
-def DomeLight "Sky" { float inputs:intensity = 3; asset inputs:texture:file = @seed.png@ }
+def CylinderLight "Tube" { float inputs:radius = 0.1; }
+def DistantLight "Sun" { float inputs:angle = 0.5; }
+def DomeLight "Sky" { float inputs:intensity = 3; asset inputs:texture:file = @seed.png@; }
 def Camera "Main"
 {
     float focalLength = 35
@@ -130,7 +130,7 @@ def Camera "Main"
     double3 xformOp:translate.timeSamples = { 1: (0, 0, 9), 24: (1, 0, 9) }
     uniform token[] xformOpOrder = ["xformOp:translate"]
 }
-def Cylinder "Post" { token axis = "X"; double height = 3 }
+def Cylinder "Post" { token axis = "X"; double height = 3; }
 def "Copy" (prepend references = </Post>; instanceable = true) { }
 """
 

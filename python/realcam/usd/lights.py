@@ -17,9 +17,9 @@ from .shapes import about_axis, disc, rectangle, revolved, sphere
 from .stage import OpenStage
 from .surface import Surface, Values
 
-# Polygons instead of circles: their perimeter, and with it the mean area that they show, is that of the circle
-# (Cauchy's formula). 64 segments then leave 0.04% of the light in any direction.
-_SEGMENTS = 64
+# Polygons instead of circles, and polyhedra instead of spheres, with the perimeter or area of the original: so their
+# mean projected width or area is the same too (Cauchy's formula). With these segments, illuminances are right to 0.1%.
+_SPHERE_SEGMENTS, _CYLINDER_SEGMENTS = 64, 128
 
 Radiance = tuple[float, float, float]
 
@@ -96,19 +96,18 @@ def scaled(radiance: Radiance, factor: float) -> Radiance:
 
 def _surface_of(opened: OpenStage, prim: Usd.Prim) -> Surface | None:
     time = opened.time
-    perimeter = math.pi / (_SEGMENTS * math.sin(math.pi / _SEGMENTS))  # of a circle, to that of the inscribed polygon
     if prim.IsA(UsdLux.SphereLight):
         radius = _radius_of(prim, time)
         if radius <= 0 or _is_point(prim, time) or _cone_of(prim, time) is not None:
             return None
-        unit = sphere(1.0, _SEGMENTS)
+        unit = sphere(1.0, _SPHERE_SEGMENTS)
         factor = radius * math.sqrt(4 * math.pi / world_area(unit, Gf.Matrix4d(1)))
         return _with_points(unit, unit.points * factor)
     if prim.IsA(UsdLux.DiskLight):
         radius = _number(UsdLux.DiskLight(prim).GetRadiusAttr(), time, 0.5)
         unit = disc(1.0, 0.0, -1)
-        segment_area = _SEGMENTS_OF_DISC / 2 * math.sin(2 * math.pi / _SEGMENTS_OF_DISC)
-        return _with_points(unit, unit.points * (radius * math.sqrt(math.pi / segment_area))) if radius > 0 else None
+        factor = radius * math.sqrt(math.pi / world_area(unit, Gf.Matrix4d(1)))
+        return _with_points(unit, unit.points * factor) if radius > 0 else None
     if prim.IsA(UsdLux.RectLight):
         light = UsdLux.RectLight(prim)
         width, height = _number(light.GetWidthAttr(), time, 1.0), _number(light.GetHeightAttr(), time, 1.0)
@@ -122,12 +121,11 @@ def _surface_of(opened: OpenStage, prim: Usd.Prim) -> Surface | None:
         radius, length = _number(light.GetRadiusAttr(), time, 0.5), _number(light.GetLengthAttr(), time, 1.0)
         if radius <= 0 or length <= 0:
             return None
-        profile = np.array([[radius * perimeter, -length / 2], [radius * perimeter, length / 2]])
-        return about_axis(revolved(profile, np.array([[1.0, 0.0]] * 2), _SEGMENTS), "X")
+        angle = math.pi / _CYLINDER_SEGMENTS
+        of_polygon = radius * angle / math.sin(angle)  # radius of the polygon with the perimeter of the circle
+        profile = np.array([[of_polygon, -length / 2], [of_polygon, length / 2]])
+        return about_axis(revolved(profile, np.array([[1.0, 0.0]] * 2), _CYLINDER_SEGMENTS), "X")
     return None
-
-
-_SEGMENTS_OF_DISC = 96  # of shapes.disc
 
 
 def _with_points(surface: Surface, points: np.ndarray) -> Surface:

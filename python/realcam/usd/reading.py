@@ -15,7 +15,7 @@ from .cameras import camera_json
 from .dome import Domes
 from .glb import Glb, Json
 from .lights import area_light, is_normalised, punctual_light, radiance_of, scaled, world_area
-from .materials import Materials, TranslatedMaterial
+from .materials import DEFAULT_COLOUR, Materials, TranslatedMaterial
 from .meshes import mesh_surface, shape_with_primvars
 from .motion import flat, set_transform
 from .shapes import shape_surface
@@ -223,8 +223,6 @@ class Translation:
 
     def _colours(self, material: TranslatedMaterial, values: dict[str, Any], count: int) -> np.ndarray | None:
         """Returns vertex colours, (V, 3 or 4); None if there are none."""
-        from .materials import DEFAULT_COLOUR
-
         if not material.colours and not material.opacities:
             return None
         rgb = np.ones((count, 3))

@@ -1,4 +1,4 @@
-"""Lights of UsdLux on a white matte floor, compared with closed forms; a light of a known illuminance is the measure."""
+"""Lights of UsdLux on a white matte floor, compared with closed forms. A known illuminance is the measure."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def illuminance(folder: Path, light: str, height: float, turn: str = DOWN, metre
 
 
 def rectangle_above(width: float, depth: float, height: float) -> float:
-    """Illuminance per radiance below the middle of a parallel rectangle (Howell, configuration factor B-3, four times)."""
+    """Illuminance per radiance below the middle of a parallel rectangle (Howell, factor B-3, four times)."""
     a, b = width / 2 / height, depth / 2 / height
     factor = (
         a / math.sqrt(1 + a * a) * math.atan(b / math.sqrt(1 + a * a))
@@ -76,36 +76,36 @@ def cylinder_above(radius: float, length: float, height: float) -> float:
 @pytest.mark.parametrize(
     ("light", "height", "expected"),
     [
-        ('SphereLight "L" { float inputs:radius = 1; float inputs:intensity = 100 }', 5, 100 * math.pi / 25),
-        ('SphereLight "L" { float inputs:radius = 1; float inputs:intensity = 100; bool inputs:normalize = 1 }', 5, 1),
+        ('SphereLight "L" { float inputs:radius = 1; float inputs:intensity = 100; }', 5, 100 * math.pi / 25),
+        ('SphereLight "L" { float inputs:radius = 1; float inputs:intensity = 100; bool inputs:normalize = 1; }', 5, 1),
         (
-            'DiskLight "L" { float inputs:radius = 2; float inputs:intensity = 10; float inputs:exposure = 3 }',
+            'DiskLight "L" { float inputs:radius = 2; float inputs:intensity = 10; float inputs:exposure = 3; }',
             4,
             80 * math.pi * 4 / 20,
         ),
         (
-            'RectLight "L" { float inputs:width = 4; float inputs:height = 2; float inputs:intensity = 10 }',
+            'RectLight "L" { float inputs:width = 4; float inputs:height = 2; float inputs:intensity = 10; }',
             3,
             10 * rectangle_above(4, 2, 3),
         ),
         (
-            'CylinderLight "L" { float inputs:radius = 0.5; float inputs:length = 4; float inputs:intensity = 10 }',
+            'CylinderLight "L" { float inputs:radius = 0.5; float inputs:length = 4; float inputs:intensity = 10; }',
             3,
             10 * cylinder_above(0.5, 4, 3),
         ),
         (
-            'SphereLight "L" { bool treatAsPoint = 1; float inputs:radius = 0.5; float inputs:intensity = 100 }',
+            'SphereLight "L" { bool treatAsPoint = 1; float inputs:radius = 0.5; float inputs:intensity = 100; }',
             5,
             100 * math.pi * 0.25 / 25,
         ),
-        ('DistantLight "L" { float inputs:intensity = 7; float inputs:angle = 0 }', 5, 7),
-        ('DistantLight "L" { float inputs:intensity = 7; bool inputs:normalize = 1 }', 5, 7),
+        ('DistantLight "L" { float inputs:intensity = 7; float inputs:angle = 0; }', 5, 7),
+        ('DistantLight "L" { float inputs:intensity = 7; bool inputs:normalize = 1; }', 5, 7),
         (
-            'DistantLight "L" { float inputs:intensity = 50000; float inputs:angle = 0.53 }',
+            'DistantLight "L" { float inputs:intensity = 50000; float inputs:angle = 0.53; }',
             5,
             50000 * math.pi * math.sin(math.radians(0.265)) ** 2,
         ),
-        ('DomeLight "L" { float inputs:intensity = 3 }', 5, 3 * math.pi),
+        ('DomeLight "L" { float inputs:intensity = 3; }', 5, 3 * math.pi),
     ],
 )
 def test_illuminance(tmp_path: Path, light: str, height: float, expected: float) -> None:
@@ -114,14 +114,14 @@ def test_illuminance(tmp_path: Path, light: str, height: float, expected: float)
 
 def test_illuminance_does_not_depend_on_the_unit(tmp_path: Path) -> None:
     """A radiance is the same in any unit; a normalised light has its power per area of the stage's unit."""
-    light = 'DiskLight "L" { float inputs:radius = 2; float inputs:intensity = 10 }'
+    light = 'DiskLight "L" { float inputs:radius = 2; float inputs:intensity = 10; }'
     assert illuminance(tmp_path, light, 4, metres=0.01) == pytest.approx(10 * math.pi * 4 / 20, rel=TOLERANCE)
 
 
 def test_spot_of_a_shaping_cone(tmp_path: Path) -> None:
     light = (
         'SphereLight "L" (prepend apiSchemas = ["ShapingAPI"]) { float inputs:radius = 0.1; '
-        "float inputs:intensity = 100; float inputs:shaping:cone:angle = 20 }"
+        "float inputs:intensity = 100; float inputs:shaping:cone:angle = 20; }"
     )
     assert illuminance(tmp_path, light, 5) == pytest.approx(100 * math.pi * 0.01 / 25, rel=TOLERANCE)
     assert illuminance(tmp_path, light, 5, "float xformOp:rotateX = -60") == 0
@@ -135,7 +135,7 @@ def test_colour_temperature(tmp_path: Path) -> None:
     path = tmp_path / "stage.usda"
     path.write_text(
         '#usda 1.0\ndef SphereLight "L" { color3f inputs:color = (1, 0.5, 1); float inputs:intensity = 2; '
-        "bool inputs:enableColorTemperature = 1; float inputs:colorTemperature = 3200 }\n"
+        "bool inputs:enableColorTemperature = 1; float inputs:colorTemperature = 3200; }\n"
     )
     opened = open_stage(str(path))
     found = radiance_of(opened, opened.stage.GetPrimAtPath("/L"))
@@ -159,8 +159,8 @@ def test_dome_picture_is_turned_as_usd_turns_it(tmp_path: Path) -> None:
         path = tmp_path / f"{kind}.usda"
         path.write_text(
             f'#usda 1.0\n(metersPerUnit = 1)\ndef Cube "Far" {{ double3 xformOp:translate = (0, 0, 900); '
-            f'uniform token[] xformOpOrder = ["xformOp:translate"] }}\ndef DomeLight "D" {{ {turn} '
-            "asset inputs:texture:file = @sky.exr@ }\n"
+            f'uniform token[] xformOpOrder = ["xformOp:translate"]; }}\ndef DomeLight "D" {{ {turn} '
+            "asset inputs:texture:file = @sky.exr@; }\n"
         )
         up = (0, 0, 1) if expected[1] else (0, 1, 0)
         camera = scenes.pinhole(rc.Film(1, 1, (4, 4)), position=(0, 0, 0), look_at=expected, up=up)

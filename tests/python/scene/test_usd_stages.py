@@ -12,7 +12,7 @@ import realcam as rc
 
 pytest.importorskip("pxr")
 
-from pxr import Gf, Usd, UsdGeom
+from pxr import Gf, Sdf, Usd, UsdGeom
 
 # Points and normals pass through 32-bit floats, of 6e-8 relative rounding, and matrices of the stage are doubles.
 TOLERANCE = 1e-6
@@ -69,14 +69,14 @@ def test_units_axes_and_nested_transforms(tmp_path: Path, header: str) -> None:
 @pytest.mark.parametrize(
     "shape",
     [
-        'Cube "C" { double size = 3 }',
-        'Sphere "S" { double radius = 2 }',
-        'Cylinder "C" { double radius = 2; double height = 5; token axis = "X" }',
-        'Cone "C" { double radius = 2; double height = 5; token axis = "Y" }',
-        'Capsule "C" { double radius = 1; double height = 5 }',
-        'Plane "P" { double width = 2; double length = 5; token axis = "X" }',
-        'Plane "P" { double width = 2; double length = 5; token axis = "Y" }',
-        'Plane "P" { double width = 2; double length = 5 }',
+        'Cube "C" { double size = 3; }',
+        'Sphere "S" { double radius = 2; }',
+        'Cylinder "C" { double radius = 2; double height = 5; token axis = "X"; }',
+        'Cone "C" { double radius = 2; double height = 5; token axis = "Y"; }',
+        'Capsule "C" { double radius = 1; double height = 5; }',
+        'Plane "P" { double width = 2; double length = 5; token axis = "X"; }',
+        'Plane "P" { double width = 2; double length = 5; token axis = "Y"; }',
+        'Plane "P" { double width = 2; double length = 5; }',
     ],
 )
 def test_extents_of_shapes(tmp_path: Path, shape: str) -> None:
@@ -107,23 +107,25 @@ def test_point_instancer_with_nested_prototypes(tmp_path: Path) -> None:
 
 
 def test_purpose_visibility_references_and_variants(tmp_path: Path) -> None:
-    stage_file(tmp_path, 'def Cube "Part" { double size = 2 }', 'defaultPrim = "Part"', name="part.usda")
+    stage_file(tmp_path, 'def Cube "Part" { double size = 2; }', 'defaultPrim = "Part"', name="part.usda")
     body = """def Xform "Chair" (
-    variants = { string size = "small" }
+    variants = { string size = "small"; }
     prepend variantSets = "size"
 ) {
     variantSet "size" = {
-        "small" { def "Leg" (references = @part.usda@) { } }
+        "small" { def "Leg" (references = @part.usda@) { }
+        }
         "large" { def "Leg" (references = @part.usda@) {
             float3 xformOp:scale = (5, 5, 5)
             uniform token[] xformOpOrder = ["xformOp:scale"]
-        } }
+        }
+        }
     }
 }
 def Cube "Proxy" { uniform token purpose = "proxy"
-    double size = 50 }
+    double size = 50; }
 def Cube "Hidden" { token visibility = "invisible"
-    double size = 50 }
+    double size = 50; }
 """
     path = stage_file(tmp_path, body)
     assert np.array(rc.Scene.load(path).bounds_m).max() == pytest.approx(1)
@@ -157,7 +159,7 @@ def test_primvars_in_all_interpolations(interpolation: str, count: int) -> None:
     mesh.CreateFaceVertexCountsAttr([4, 4])
     mesh.CreateFaceVertexIndicesAttr([0, 1, 4, 3, 1, 2, 5, 4])
     mesh.CreateSubdivisionSchemeAttr("none")
-    primvar = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("st", "texCoord2f[]", interpolation)  # type: ignore[arg-type]
+    primvar = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, interpolation)
     primvar.Set([Gf.Vec2f(i, i * i) for i in range(count)])
     primvar.SetIndices([(3 * i) % count for i in range(count)])
     surface = mesh_surface(OpenStage("stage", stage), mesh.GetPrim(), ["st"])
@@ -166,7 +168,7 @@ def test_primvars_in_all_interpolations(interpolation: str, count: int) -> None:
     points, values, indices = vertex_arrays(surface, triangles)
     flat = np.array(primvar.ComputeFlattened())
     element = {
-        "constant": np.zeros(6, int),
+        "constant": np.zeros(12, int),
         "uniform": np.repeat(triangles.face_rows, 3),
         "faceVarying": triangles.corners.ravel(),
     }.get(interpolation, surface.corners[triangles.corners.ravel()])
@@ -231,7 +233,7 @@ def test_motion_follows_usd(tmp_path: Path) -> None:
 
 
 def test_camera_keeps_its_lens(tmp_path: Path) -> None:
-    body = """def Cube "Box" { double size = 0.2 }
+    body = """def Cube "Box" { double size = 0.2; }
 def Camera "Main" {
     double3 xformOp:translate = (0, 0, 2)
     uniform token[] xformOpOrder = ["xformOp:translate"]
@@ -263,17 +265,17 @@ POINTS = "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]"
     ("body", "message"),
     [
         (
-            f'def Mesh "M" {{ int[] faceVertexCounts = [3]; int[] faceVertexIndices = [0, 1, 9]; {POINTS} }}',
+            f'def Mesh "M" {{ int[] faceVertexCounts = [3]; int[] faceVertexIndices = [0, 1, 9]; {POINTS}; }}',
             "/M: faceVertexIndices: expected indices from 0 to 2; found 9",
         ),
         (
-            f'def Mesh "M" {{ int[] faceVertexCounts = [4]; int[] faceVertexIndices = [0, 1, 2]; {POINTS} }}',
+            f'def Mesh "M" {{ int[] faceVertexCounts = [4]; int[] faceVertexIndices = [0, 1, 2]; {POINTS}; }}',
             "/M: faceVertexIndices: expected 4 indices; found 3",
         ),
         ("def Mesh { nonsense", "is not a valid USD stage"),
         (
             'def Cube "C" { }\ndef PointInstancer "P" { rel prototypes = [</C>]; int[] protoIndices = [3]; '
-            "point3f[] positions = [(0, 0, 0)] }",
+            "point3f[] positions = [(0, 0, 0)]; }",
             "/P: protoIndices: expected numbers from 0 to 0; found 3",
         ),
     ],
@@ -291,7 +293,7 @@ def test_bad_input_is_one_line(tmp_path: Path, body: str, message: str) -> None:
 def test_notices_name_what_is_left_out(tmp_path: Path) -> None:
     body = """def Cube "Box" (references = @missing.usda@) { }
 def BasisCurves "Hair" { }
-def DistantLight "Sun" { float inputs:angle = 3 }
+def DistantLight "Sun" { float inputs:angle = 3; }
 """
     warnings = "\n".join(rc.Scene.load(stage_file(tmp_path, body)).warnings)
     for text in ("missing.usda", "/Hair: a BasisCurves is left out", "/Sun: the angle of the distant light"):
