@@ -21,7 +21,10 @@ HEADER = (
 
 GEOMETRY = """def Xform "World" (variants = { string size = "small"; }; prepend variantSets = "size")
 {
-    variantSet "size" = { "small" { double3 xformOp:scale = (1, 1, 1); } "large" { double3 xformOp:scale = (3, 2, 1); } }
+    variantSet "size" = {
+        "small" { double3 xformOp:scale = (1, 1, 1); }
+        "large" { double3 xformOp:scale = (3, 2, 1); }
+    }
     float xformOp:rotateZ.timeSamples = { 1: 0, 12: 200, 24: 360 }
     uniform token[] xformOpOrder = ["xformOp:rotateZ", "xformOp:scale"]
     def Mesh "Polygons"

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any
 
-from .._core import InputError, Scene, SceneFileError
+from .._core import RealcamError, Scene, SceneFileError
 
 __all__ = ["camera_settings", "read_stage"]
 
@@ -41,9 +41,9 @@ def _call(module: str, function: str, path: str, *arguments: Any) -> Any:
     call: Callable[..., Any] = getattr(import_module(f".{module}", __name__), function)
     try:
         return call(path, *arguments)
-    except (Tf.ErrorException, RuntimeError, MemoryError, RecursionError) as error:
-        if isinstance(error, (InputError, SceneFileError)):
-            raise
+    except RealcamError:
+        raise
+    except (Tf.ErrorException, RuntimeError, MemoryError, TypeError, ValueError, IndexError, OverflowError) as error:
         raise SceneFileError(f"{path}: {_reason(error)}") from None
 
 

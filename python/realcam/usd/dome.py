@@ -79,12 +79,12 @@ def _turns_to_z(prim: Usd.Prim, opened: OpenStage) -> bool:
     if not prim.IsA(UsdLux.DomeLight_1):
         return False
     axis = UsdLux.DomeLight_1(prim).GetPoleAxisAttr().Get(opened.time)
-    return axis == "Z" or (axis == "scene" and UsdGeom.GetStageUpAxis(opened.stage) == "Z")
+    return bool(axis == "Z" or (axis == "scene" and UsdGeom.GetStageUpAxis(opened.stage) == "Z"))
 
 
 def _rotation(scene_from_dome: Gf.Matrix4d, turns_to_z: bool) -> Pixels:
     """Returns the matrix (3, 3), for column vectors, of directions of the map to the scene."""
-    matrix = np.array(scene_from_dome.RemoveScaleShear())[:3, :3].T
+    matrix: Pixels = np.array(scene_from_dome.RemoveScaleShear())[:3, :3].T
     if turns_to_z:
         matrix = matrix @ np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # takes +y to +z
     return matrix

@@ -207,7 +207,7 @@ class _Network:
         return Sampled(picture, output, mapping, scale, bias, space)
 
     def _mapping(self, shader: UsdShade.Shader) -> Mapping | None:
-        wraps = tuple(self._wrap(str(self._value(shader, name, "useMetadata"))) for name in ("wrapS", "wrapT"))
+        wrap_s, wrap_t = (self._wrap(str(self._value(shader, name, "useMetadata"))) for name in ("wrapS", "wrapT"))
         port, transform = shader.GetInput("st"), None
         for _ in range(_MAX_NODES):
             source = port.GetConnectedSource() if port else None
@@ -224,7 +224,7 @@ class _Network:
                 port = node.GetInput("in")
             elif kind.startswith("UsdPrimvarReader_"):
                 name = str(self._value(node, "varname", "") or "st")
-                return Mapping(name, *(transform or ()), wraps=wraps)
+                return Mapping(name, *(transform or ((1.0, 1.0), 0.0, (0.0, 0.0))), (wrap_s, wrap_t))
             elif not kind and source[0].GetPrim().IsA(UsdShade.NodeGraph):
                 port = source[0].GetInput(source[1]) or source[0].GetOutput(source[1])
             else:

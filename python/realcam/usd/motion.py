@@ -27,11 +27,13 @@ def set_transform(opened: OpenStage, glb: Glb, node: Json, index: int, xformable
     times, rows = _keys(opened, xformable, is_held)
     if not np.isfinite(np.concatenate([np.ravel(r) for row in rows for r in row])).all():
         raise opened.fail(xformable.GetPrim(), "its transform: expected finite numbers")
-    node["translation"], node["rotation"], node["scale"] = (list(map(float, part)) for part in rows[0])
+    at_start = _decomposed(_local(xformable, opened.time))
+    node["translation"], node["rotation"], node["scale"] = (list(map(float, part)) for part in at_start)
     if len(times) < 2:
         return
     seconds = glb.floats(np.array([opened.seconds(time) for time in times]))
-    channels, samplers = [], []
+    channels: list[Json] = []
+    samplers: list[Json] = []
     for k, path in enumerate(("translation", "rotation", "scale")):
         values = np.array([row[k] for row in rows])
         if np.ptp(values, axis=0).max() == 0:
@@ -42,7 +44,7 @@ def set_transform(opened: OpenStage, glb: Glb, node: Json, index: int, xformable
     animations = glb.json.setdefault("animations", [{"channels": [], "samplers": []}])
     offset = len(animations[0]["samplers"])
     for channel in channels:
-        channel["sampler"] += offset  # type: ignore[operator]
+        channel["sampler"] += offset
     animations[0]["channels"] += channels
     animations[0]["samplers"] += samplers
 

@@ -10,7 +10,7 @@ import numpy as np
 from pxr import Gf, Usd, UsdGeom, UsdLux, UsdShade, UsdSkel
 
 from .. import _core
-from .._core import Scene
+from .._core import RealcamError, Scene
 from .cameras import camera_json
 from .dome import Domes
 from .glb import Glb, Json
@@ -23,6 +23,7 @@ from .stage import OpenStage, children_of, open_stage
 from .surface import Surface, triangulated, vertex_arrays
 
 _MAX_NESTED_INSTANCERS = 16
+_WRONG_VALUES = (TypeError, ValueError, IndexError, OverflowError, np.linalg.LinAlgError)
 _SHOWN_PURPOSES = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
 _Y_FROM_Z_UP = Gf.Matrix4d(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1)  # for row vectors: y to -z, z to y
 
@@ -32,6 +33,7 @@ def scene_of_stage(path: str, scale: float, objects: Sequence[str], variants: Se
     opened = open_stage(path, variants)
     translation = Translation(opened)
     translation.add_stage()
+    opened.take_diagnostics()
     lines = opened.notices.lines()
     scene = _core._read_glb(path, translation.glb.encoded(), lines, scale, objects)
     return translation.domes.light(scene)
@@ -78,7 +80,12 @@ class Translation:
             self.opened.count(prim, visit.depth)
             if not self._is_shown(prim):
                 continue
-            node = self._add_node(prim, visit.node, root)
+            try:
+                node = self._add_node(prim, visit.node, root)
+            except RealcamError:
+                raise
+            except _WRONG_VALUES as error:  # a stage may give an attribute any type
+                raise self.opened.fail(prim, f"expected other values: {str(error).splitlines()[0]:.200}") from None
             if not prim.IsA(UsdGeom.PointInstancer):  # whose prototypes are not shown themselves
                 stack += [_Visit(child, node, visit.depth + 1) for child in reversed(children_of(prim))]
 

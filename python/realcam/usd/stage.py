@@ -21,6 +21,22 @@ MAX_BYTES = 8 << 30  # of all layers
 _SELECTION = re.compile(r"(?P<prim>/[^{}]*)\{(?P<set>[^{}=]+)=(?P<variant>[^{}=]*)\}")
 
 
+class Diagnostics:
+    """Collects usd-core's warnings, such as a missing reference, which it would otherwise print."""
+
+    def __init__(self) -> None:
+        self._delegate = UsdUtils.CoalescingDiagnosticDelegate()
+
+    def texts(self) -> list[str]:
+        """Returns the warnings, without the places in memory that usd-core adds to them."""
+        items = self._delegate.TakeCoalescedDiagnostics()
+        texts = [" ".join(part.commentary.split()) for item in items for part in item.unsharedItems]
+        if any(".mtlx" in text for text in texts):
+            texts = [text for text in texts if ".mtlx" not in text]
+            texts.append("MaterialX files (.mtlx) are left out, which usd-core cannot read")
+        return [re.sub(r" \([^()]* on stage @.*\)$", "", text)[:300] for text in texts]
+
+
 @dataclass
 class OpenStage:
     """A composed stage.
@@ -30,6 +46,7 @@ class OpenStage:
 
     path: str
     stage: Usd.Stage
+    diagnostics: Diagnostics | None = None
     notices: Notices = field(default_factory=Notices)
     _prim_count: int = 0
     _folder: tempfile.TemporaryDirectory[str] | None = None
@@ -41,10 +58,15 @@ class OpenStage:
     @property
     def metres_per_unit(self) -> float:
         """Raises SceneFileError if the stage's value is not positive."""
-        value = float(UsdGeom.GetStageMetersPerUnit(self.stage))
+        value: float = UsdGeom.GetStageMetersPerUnit(self.stage)
         if not 0 < value < float("inf"):
             raise SceneFileError(f"{self.path}: metersPerUnit: expected a positive number; found {value:g}")
         return value
+
+    def take_diagnostics(self) -> None:
+        """Adds what usd-core has warned of since the last call to the notices."""
+        for text in self.diagnostics.texts() if self.diagnostics else []:
+            self.notices.add("usd-core", text)
 
     def seconds(self, time_code: float) -> float:
         """Returns the time of a time code in seconds; the stage begins at 0."""
@@ -76,19 +98,17 @@ def open_stage(path: str, variants: Sequence[str] = ()) -> OpenStage:
     """Opens a stage with all payloads, and selects variants, such as "/Chair{color=red}". Raises SceneFileError, and
     InputError for a selection that the stage does not have."""
     _check_file(path)
-    notices = Notices()
-    diagnostics = _Diagnostics()
+    diagnostics = Diagnostics()
     try:
         stage = Usd.Stage.Open(str(Path(path).absolute()), Usd.Stage.LoadAll)
         if stage is None:
             raise SceneFileError(f"{path}: is not a USD stage")
-        opened = OpenStage(path, stage, notices)
+        opened = OpenStage(path, stage, diagnostics)
         for selection in variants:
             _select(opened, selection)
     except Tf.ErrorException as error:
         raise SceneFileError(f"{path}: is not a valid USD stage: {_first_message(error)}") from None
-    for text in diagnostics.texts():
-        notices.add("composition", text)
+    opened.take_diagnostics()
     if not stage.GetTimeCodesPerSecond() > 0:
         raise SceneFileError(
             f"{path}: timeCodesPerSecond: expected a positive number; found {stage.GetTimeCodesPerSecond():g}"
@@ -142,19 +162,3 @@ def _select(opened: OpenStage, selection: str) -> None:
 
 def _first_message(error: Tf.ErrorException) -> str:
     return " ".join(str(error.args[0].commentary).split())[:300] if error.args else type(error).__name__
-
-
-class _Diagnostics:
-    """Collects usd-core's warnings, such as a missing reference, which it would otherwise print."""
-
-    def __init__(self) -> None:
-        self._delegate = UsdUtils.CoalescingDiagnosticDelegate()
-
-    def texts(self) -> list[str]:
-        """Returns the warnings, without the places in memory that usd-core adds to them."""
-        items = self._delegate.TakeCoalescedDiagnostics()
-        texts = [" ".join(part.commentary.split()) for item in items for part in item.unsharedItems]
-        if any(".mtlx" in text for text in texts):
-            texts = [text for text in texts if ".mtlx" not in text]
-            texts.append("MaterialX files (.mtlx) are left out, which usd-core cannot read")
-        return [re.sub(r" \([^()]* on stage @.*\)$", "", text)[:300] for text in texts]

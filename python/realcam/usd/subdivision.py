@@ -51,8 +51,9 @@ def subdivided(surface: Surface, scheme: str, sharpness: Sharpness) -> Surface:
     levels = LEVELS
     while levels > 0 and len(surface.corners) * 4 ** (levels - 1) > MAX_FACES:
         levels -= 1
-    edge_points, edge_values = sharpness.edges, np.asarray(sharpness.edge_values, np.float64)
-    corner_values = np.zeros(len(surface.points))
+    edge_points = sharpness.edges
+    edge_values: Floats = np.asarray(sharpness.edge_values, np.float64)
+    corner_values: Floats = np.zeros(len(surface.points))
     np.maximum.at(corner_values, sharpness.points, sharpness.point_values)
     surface = replace(surface, points=np.asarray(surface.points, np.float64))
     refine = _catmull_clark if scheme == "catmullClark" else _loop

@@ -104,7 +104,7 @@ class Sampled:
         if self.picture.is_srgb(self.space):
             is_colour = np.array(self.channels) < 3  # alpha is always linear
             values = np.where(is_colour, _linear_of_srgb(values), values)
-        return values * np.array(self.scale)[self.channels] + np.array(self.bias)[self.channels]
+        return np.asarray(values * np.array(self.scale)[self.channels] + np.array(self.bias)[self.channels])
 
 
 @dataclass
