@@ -157,9 +157,9 @@ struct SceneFormat {
                      Checkpoint& checkpoint);
 };
 
-constexpr SceneFormat kFormats[] = {
-    {".glb", &read_gltf_scene}, {".gltf", &read_gltf_scene}, {".obj", &read_obj_scene}, {".ply", &read_ply_scene},
-    {".usd", &read_stage},      {".usda", &read_stage},      {".usdc", &read_stage},    {".usdz", &read_stage}};
+constexpr SceneFormat kFormats[] = {{".glb", &read_gltf_scene}, {".gltf", &read_gltf_scene}, {".obj", &read_obj_scene},
+                                    {".ply", &read_ply_scene},  {".usd", &read_stage},       {".usda", &read_stage},
+                                    {".usdc", &read_stage},     {".usdz", &read_stage}};
 
 /// Returns the format of a path's suffix. Throws SceneFileError if it is unknown.
 const SceneFormat& format_of(const std::string& path) {

@@ -48,8 +48,8 @@ struct SceneFileOptions {
 /// `scale` applies to lengths alone; photometric quantities keep their values.
 Assembly read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image);
 
-/// read_scene for the bytes of a .glb. `path`: names the scene in messages. `warnings`: of the caller, without the path;
-/// they precede those of the reader.
+/// read_scene for the bytes of a .glb. `path`: names the scene in messages. `warnings`: of the caller, without the
+/// path; they precede those of the reader.
 Assembly read_glb(const std::string& path, std::string glb, std::vector<std::string> warnings,
                   const SceneFileOptions& options, const ImageReader& read_image);
 

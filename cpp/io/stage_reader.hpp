@@ -1,6 +1,6 @@
 #pragma once
-// Stages of USD (.usd, .usda, .usdc, .usdz). Only the Python package reads them, with the package usd-core; it registers
-// its functions here when its extension is loaded. The executable has none.
+// Stages of USD (.usd, .usda, .usdc, .usdz). Only the Python package reads them, with the package usd-core; it
+// registers its functions here when its extension is loaded. The executable has none.
 
 #include <functional>
 #include <string>

@@ -227,8 +227,8 @@ public:
         io::SceneFileOptions options;
         options.scale = shown.number("scale").value_or(1);
         options.variants = shown.texts("variants");
-        values_ = io::parse_toml(io::stage_reader(scene).camera_settings(scene, options, camera), scene,
-                                 ShotTable::fail_at);
+        values_ =
+            io::parse_toml(io::stage_reader(scene).camera_settings(scene, options, camera), scene, ShotTable::fail_at);
     }
 
     /// Adds the settings that a shot file neither has nor excludes.

@@ -131,9 +131,10 @@ every change returns a new Scene. Its materials and warnings are those of the st
 their own.)");
     def_value(scene_class);
     scene_class
-        .def_static("load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
-                    "variants"_a = std::vector<std::string>{},
-                    R"(Reads a scene file: .obj (with its .mtl), .gltf, .glb, .ply, or a stage of USD (.usd, .usda, .usdc
+        .def_static(
+            "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
+            "variants"_a = std::vector<std::string>{},
+            R"(Reads a scene file: .obj (with its .mtl), .gltf, .glb, .ply, or a stage of USD (.usd, .usda, .usdc
 or .usdz; realcam[usd]).
 scale: metres per unit of the file; for a stage, a factor on its metersPerUnit.
 variants: variants of a stage, such as "/Chair{color=red}".

@@ -48,8 +48,8 @@ Assembly read_glb(const PathLike& path, const py::bytes& glb, std::vector<std::s
                         picture_readers().texture);
 }
 
-/// Returns the values of a picture as stored in its file, (H, W, 4): uint8, or float32 with 16-bit values as fractions of
-/// the largest. `path`: its file; empty: `bytes` are those of a PNG or JPEG. Throws ImageFileError.
+/// Returns the values of a picture as stored in its file, (H, W, 4): uint8, or float32 with 16-bit values as fractions
+/// of the largest. `path`: its file; empty: `bytes` are those of a PNG or JPEG. Throws ImageFileError.
 Typed<"NDArray[uint8] | NDArray[float32]", py::array> read_texture(const PathLike& path, const py::bytes& bytes) {
     const std::string name = path_from(path), encoded = bytes;
     std::optional<io::DecodedImage> image;
@@ -69,17 +69,17 @@ void bind_stages(py::module_& m) {
     m.def("_read_glb", &read_glb, "path"_a, "glb"_a, "warnings"_a, "scale"_a, "objects"_a,
           "Internal. Returns the Scene of the bytes of a .glb. path: names it in messages. warnings: precede those of "
           "the reader. scale, objects: see Scene.load.");
-    m.def("_read_texture", &read_texture, "path"_a, "bytes"_a,
-          "Internal. Returns the values of a picture as stored, (H, W, 4): uint8 or float32. path: its file; \"\": bytes "
-          "are those of a PNG or JPEG. Raises ImageFileError.");
-    io::set_stage_reader({[](const std::string& path, const io::SceneFileOptions& options) {
-                              return call_usd<Assembly>("read_stage", path, options.scale, options.objects,
-                                                        options.variants);
-                          },
-                          [](const std::string& path, const io::SceneFileOptions& options, const std::string& camera) {
-                              return call_usd<std::string>("camera_settings", path, options.scale, options.variants,
-                                                           camera);
-                          }});
+    m.def(
+        "_read_texture", &read_texture, "path"_a, "bytes"_a,
+        "Internal. Returns the values of a picture as stored, (H, W, 4): uint8 or float32. path: its file; \"\": bytes "
+        "are those of a PNG or JPEG. Raises ImageFileError.");
+    io::set_stage_reader(
+        {[](const std::string& path, const io::SceneFileOptions& options) {
+             return call_usd<Assembly>("read_stage", path, options.scale, options.objects, options.variants);
+         },
+         [](const std::string& path, const io::SceneFileOptions& options, const std::string& camera) {
+             return call_usd<std::string>("camera_settings", path, options.scale, options.variants, camera);
+         }});
 }
 
 }  // namespace realcam::bindings

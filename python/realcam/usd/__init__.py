@@ -10,6 +10,8 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any
 
+import numpy as np
+
 from .._core import RealcamError, Scene, SceneFileError
 
 __all__ = ["camera_settings", "read_stage"]
@@ -40,7 +42,8 @@ def _call(module: str, function: str, path: str, *arguments: Any) -> Any:
 
     call: Callable[..., Any] = getattr(import_module(f".{module}", __name__), function)
     try:
-        return call(path, *arguments)
+        with np.errstate(all="ignore"):  # numbers of a stranger's file may overflow; readers check what they make
+            return call(path, *arguments)
     except RealcamError:
         raise
     except (Tf.ErrorException, RuntimeError, MemoryError, TypeError, ValueError, IndexError, OverflowError) as error:
