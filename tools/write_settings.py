@@ -14,7 +14,7 @@ TOP = """\
 | key | option | meaning | left out |
 |---|---|---|---|
 | `format` | | 1, the version of the file format | an error |
-| `scene` | | .obj (with .mtl), .gltf, .glb or .ply | an error |
+| `scene` | | .obj (with .mtl), .gltf, .glb, .ply, or a stage of [USD](usd.md) | an error |
 """
 
 

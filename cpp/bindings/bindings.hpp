@@ -47,6 +47,7 @@ void bind_pupil_table(py::module_& m);
 void bind_projection(py::module_& m);
 void bind_material(py::module_& m);
 void bind_scene(py::module_& m);
+void bind_stages(py::module_& m);
 void bind_scene_arrays(py::class_<Assembly>& scene);
 void bind_scene_materials(py::class_<Assembly>& scene);
 void bind_instances(py::class_<Assembly>& scene);

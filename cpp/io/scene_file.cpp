@@ -1,5 +1,6 @@
 #include "scene_file.hpp"
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
 #include <new>
@@ -19,6 +20,7 @@
 #include "scene/scene_geometry.hpp"
 #include "scene/scene_objects.hpp"
 #include "scene/scene_textures.hpp"
+#include "stage_reader.hpp"
 #include "text/printable.hpp"
 
 namespace realcam::io {
@@ -144,6 +146,10 @@ Assembly read_gltf_scene(const std::string& path, const SceneFileOptions& option
     return assemble(read_gltf(path, checkpoint), options, read_image, checkpoint);
 }
 
+Assembly read_stage(const std::string& path, const SceneFileOptions& options, const ImageReader&, Checkpoint&) {
+    return stage_reader(path).scene(path, options);
+}
+
 /// Format of scene files, with its reader.
 struct SceneFormat {
     std::string_view suffix;
@@ -151,8 +157,9 @@ struct SceneFormat {
                      Checkpoint& checkpoint);
 };
 
-constexpr SceneFormat kFormats[] = {
-    {".glb", &read_gltf_scene}, {".gltf", &read_gltf_scene}, {".obj", &read_obj_scene}, {".ply", &read_ply_scene}};
+constexpr SceneFormat kFormats[] = {{".glb", &read_gltf_scene}, {".gltf", &read_gltf_scene}, {".obj", &read_obj_scene},
+                                    {".ply", &read_ply_scene},  {".usd", &read_stage},       {".usda", &read_stage},
+                                    {".usdc", &read_stage},     {".usdz", &read_stage}};
 
 /// Returns the format of a path's suffix. Throws SceneFileError if it is unknown.
 const SceneFormat& format_of(const std::string& path) {
@@ -170,19 +177,22 @@ Assembly read_any(const std::string& path, const SceneFileOptions& options, cons
     // The system has no longer paths, and the message must not repeat all of it.
     if (path.size() > PATH_MAX) throw SceneFileError(in_quotes(path) + ": no such file");
     const SceneFormat& format = format_of(path);
+    if (!options.variants.empty() && format.read != &read_stage)
+        throw InputError(path + ": variants are selected in a USD stage; this file has none");
     check_file(path);
     return format.read(path, options, read_image, checkpoint);
 }
 
-}  // namespace
-
-Assembly read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image) {
+/// Returns read(), after checks of the scale and of the scene. Throws SceneFileError if the file or the memory does not
+/// suffice.
+template <class Read>
+Assembly checked_scene(const std::string& path, const SceneFileOptions& options, Read&& read) {
     if (!std::isfinite(options.scale) || !(options.scale > 0)) {
         throw InputError("scale must be a positive number of metres per unit of the file, not " +
                          std::to_string(options.scale));
     }
     try {
-        Assembly scene = read_any(path, options, read_image);
+        Assembly scene = read();
         SceneChecks().check(scene, path);
         return scene;
     } catch (const FileError& error) {
@@ -192,6 +202,30 @@ Assembly read_scene(const std::string& path, const SceneFileOptions& options, co
     } catch (const std::length_error&) {
         throw SceneFileError(path + ": there is too little memory for it");
     }
+}
+
+}  // namespace
+
+bool is_stage(const std::string& path) {
+    const std::string suffix = suffix_of(path);
+    return std::any_of(std::begin(kFormats), std::end(kFormats), [&](const SceneFormat& format) {
+        return format.suffix == suffix && format.read == &read_stage;
+    });
+}
+
+Assembly read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image) {
+    return checked_scene(path, options, [&] { return read_any(path, options, read_image); });
+}
+
+Assembly read_glb(const std::string& path, std::string glb, std::vector<std::string> warnings,
+                  const SceneFileOptions& options, const ImageReader& read_image) {
+    return checked_scene(path, options, [&] {
+        Checkpoint checkpoint(options.keep_going);
+        FileScene file = parse_gltf(path, std::move(glb), checkpoint);
+        append(warnings, std::move(file.warnings));
+        file.warnings = std::move(warnings);
+        return assemble(file, options, read_image, checkpoint);
+    });
 }
 
 }  // namespace realcam::io

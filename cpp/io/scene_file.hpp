@@ -1,5 +1,5 @@
 #pragma once
-// Reads scenes from files: OBJ with MTL, glTF 2.0 (.gltf, .glb) and PLY.
+// Reads scenes from files: OBJ with MTL, glTF 2.0 (.gltf, .glb), PLY and, by the Python package, stages of USD.
 
 #include <string>
 #include <vector>
@@ -17,6 +17,8 @@ struct SceneFileOptions {
                                             ///< several nodes of one name become NAME, NAME.2, NAME.3
     /// Called about fifty times a second, on the reading thread; if it returns false, reading ends with Cancelled.
     KeepGoing keep_going = {};
+    /// Variants of a USD stage, as its paths write them: "/Chair{color=red}".
+    std::vector<std::string> variants = {};
 };
 
 /// Reads a scene; the suffix selects the format. Throws SceneFileError if the file cannot be used, InputError for an
@@ -45,5 +47,10 @@ struct SceneFileOptions {
 ///
 /// `scale` applies to lengths alone; photometric quantities keep their values.
 Assembly read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image);
+
+/// read_scene for the bytes of a .glb. `path`: names the scene in messages. `warnings`: of the caller, without the
+/// path; they precede those of the reader.
+Assembly read_glb(const std::string& path, std::string glb, std::vector<std::string> warnings,
+                  const SceneFileOptions& options, const ImageReader& read_image);
 
 }  // namespace realcam::io

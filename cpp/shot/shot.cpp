@@ -203,8 +203,9 @@ Camera camera_of(const ShotRequest& request) {
 }
 
 Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, const KeepGoing& keep_going) {
-    return scene_of(request, io::read_scene(request.scene, {request.scale, {}, keep_going}, readers.texture), readers,
-                    keep_going);
+    return scene_of(request,
+                    io::read_scene(request.scene, {request.scale, {}, keep_going, request.variants}, readers.texture),
+                    readers, keep_going);
 }
 
 Assembly scene_of(const ShotRequest& request, Assembly scene, const PictureReaders& readers,

@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <vector>
 
 #include "../error.hpp"
 #include "../io/files/readable_file.hpp"
+#include "../io/stage_reader.hpp"
 #include "../io/text/printable.hpp"
 #include "../io/text/text_number.hpp"
 #include "../io/text/toml_document.hpp"
@@ -218,6 +220,69 @@ void apply_changes(toml::table& shot, const toml::table& changes) {
     for (const auto& [key, value] : changes) shot.insert_or_assign(key, value);
 }
 
+/// Settings of a stage's camera that apply where the shot file does not specify them.
+class StageSettings {
+public:
+    /// `table`: the shot file with its changes; `shown`: the same table; `scene`: the stage.
+    StageSettings(const toml::table& table, const ShotTable& shown, const std::string& scene) {
+        if (table.contains("position_m") || table.contains("look_at_m") || table.contains("pose")) return;
+        const std::string camera = shown.text("camera");
+        if (camera == "none") return;
+        io::SceneFileOptions options;
+        options.scale = shown.number("scale").value_or(1);
+        options.variants = shown.texts("variants");
+        values_ =
+            io::parse_toml(io::stage_reader(scene).camera_settings(scene, options, camera), scene, ShotTable::fail_at);
+    }
+
+    /// Adds the settings that a shot file neither has nor excludes.
+    void add_to(toml::table& table) {
+        toml::table merged = values_;
+        apply_changes(merged, table);
+        for (const auto& [name, value] : merged) {
+            if (table.contains(name)) continue;
+            table.insert(name, value);
+            added_.emplace_back(name.str());
+        }
+    }
+
+    /// Marks f-number and film size as those of another lens if the stage has no lens, or the shot file another one.
+    void mark(ShotRequest& request) const {
+        const auto has = [&](const char* key) { return std::ranges::count(added_, key) > 0; };
+        if (has("lens")) return;
+        request.f_number_is_of_other_lens |= has("f_number");
+        request.film_is_of_other_lens |= has("film_mm");
+    }
+
+private:
+    toml::table values_;
+    std::vector<std::string> added_;  // keys
+};
+
+/// Parses the text of a shot file. `scene`: the file to photograph instead of that of the text; empty: none.
+ShotRequest parse(std::string_view text, const std::string& path, const ShotChanges& changes,
+                  const std::string& scene) {
+    toml::table table = io::parse_toml(text, path, ShotTable::fail_at);
+    Changes changed;
+    if (!changes.toml.empty()) changed.values = io::parse_toml(changes.toml, path, ShotTable::fail_at);
+    for (const auto& [key, word] : changes.options) changed.values.insert_or_assign(key->name, word);
+    if (!changes.options.empty()) changed.name = option_of;
+    if (!changed.values.empty()) apply_changes(table, changed.values);
+    const ShotTable shown(table, path, &changed);
+    reject_unknown_keys(shown);
+    parse_option_texts(table, shown);
+    const std::string stage = scene.empty() ? shown.path("scene") : scene;
+    std::optional<StageSettings> stage_settings;
+    if (io::is_stage(stage) && io::has_stage_reader()) {
+        stage_settings.emplace(table, shown, stage);
+        stage_settings->add_to(table);
+    }
+    ShotRequest request = ShotReader(table, path, changed).read();
+    if (!scene.empty()) request.scene = scene;
+    if (stage_settings) stage_settings->mark(request);
+    return request;
+}
+
 }  // namespace
 
 void check_environment(Vec3f v) {
@@ -232,22 +297,11 @@ bool is_shot_file(const std::string& path) {
 }
 
 ShotRequest parse_shot(std::string_view text, const std::string& path, const ShotChanges& changes) {
-    toml::table table = io::parse_toml(text, path, ShotTable::fail_at);
-    Changes changed;
-    if (!changes.toml.empty()) changed.values = io::parse_toml(changes.toml, path, ShotTable::fail_at);
-    for (const auto& [key, word] : changes.options) changed.values.insert_or_assign(key->name, word);
-    if (!changes.options.empty()) changed.name = option_of;
-    if (!changed.values.empty()) apply_changes(table, changed.values);
-    const ShotTable shown(table, path, &changed);
-    reject_unknown_keys(shown);
-    parse_option_texts(table, shown);
-    return ShotReader(table, path, changed).read();
+    return parse(text, path, changes, "");
 }
 
 ShotRequest shot_of_scene(const std::string& path, const ShotChanges& changes) {
-    ShotRequest request = parse_shot("format = 1\nscene = \"scene\"\n", path, changes);
-    request.scene = path;
-    return request;
+    return parse("format = 1\nscene = \"scene\"\n", path, changes, path);
 }
 
 ShotRequest read_shot(const std::string& path, const ShotChanges& changes) {

@@ -116,6 +116,10 @@ void to_focus_of_keyframe(Table t, Key key, CameraKey& keyframe) {
     if (!keyframe.focus_m) t.fail(t.shown(key.name) + " of a key must be " + wanted, t.find(key.name));
 }
 
+void to_variants(Table t, Key key, Request r) {
+    r.variants = t.texts(key.name);
+}
+
 void to_film_shift_of_keyframe(Table t, Key key, CameraKey& keyframe) {
     const std::vector<double> v = t.numbers(key.name, 2);
     keyframe.film_right_mm = v[0];
@@ -172,7 +176,7 @@ std::vector<ShotKey> camera_and_scene_keys() {
         {"resolution", "--resolution", kCamera, "WxH", size, "a width and a height in pixels, such as 960x640",
          "Number of pixels", "960 along the longer side", {}, to_resolution},
         with_details({"camera", "--camera", kCamera, "NAME", text, "the name of a camera of the scene, or none,",
-         "glTF camera whose position, direction and motion are used, by the name of its node; or none",
+         "Camera of a glTF or USD scene whose position, direction and motion are used, by its name; or none",
          "the first, without position and direction", {"position_m", "look_at_m", "pose"}, to_text<&R::view, &V::camera>},
          "See docs/scenes.md."),
         with_details({"position_m", "--position", kCamera, "X,Y,Z", three_numbers, "three numbers, such as 0,1.5,-2",
@@ -223,6 +227,8 @@ std::vector<ShotKey> camera_and_scene_keys() {
          "mapped is a thin lens with the real one's distortion and vignetting."),
         {"scale", "--scale", kScene, "METRES", number, kNumber, "Metres per unit of the scene's file", "1", {},
          to_number<&R::scale>},
+        {"variants", "--variants", kScene, "SELECTIONS", names, "variants such as /Chair{color=red}",
+         "Variants of a USD stage, separated by commas, such as /Chair{color=red}", "the stage's own", {}, to_variants},
         {"texture", nullptr, kScene, "FILE", text, "a picture", "Picture that textures all materials",
          "the scene's own", {}, to_file<&R::texture>},
         with_details({"environment", "--environment", kScene, "CD_M2|FILE", number_or_file,

@@ -41,6 +41,7 @@ struct PictureRequest {
 struct ShotRequest : PictureRequest {
     std::string scene;  ///< scene file
     double scale = 1;   ///< metres per unit of the scene file
+    std::vector<std::string> variants;  ///< of a USD stage (io::SceneFileOptions)
     std::string texture;  ///< picture for all materials; empty: the scene's own textures
     std::optional<Vec3f> environment_cd_m2;  ///< radiance of a uniform environment, linear Rec. 709
     std::string environment_file;            ///< latitude-longitude picture; empty: none
@@ -54,8 +55,8 @@ struct ShotRequest : PictureRequest {
     std::string zoom;  ///< zoom position of the lens; empty: as in its file
     std::optional<double> focal_length_mm;  ///< for a zoom lens, in place of a position
     std::optional<double> f_number;
-    /// True if the shot file's lens was replaced by an option, and the f-number or the film size is that of the shot
-    /// file.
+    /// True if the f-number or the film size is that of the shot file or of the stage's camera, and the lens is not:
+    /// an option has replaced it, or the stage has none.
     bool f_number_is_of_other_lens = false, film_is_of_other_lens = false;
     std::optional<int> blades;  ///< number of blades of the diaphragm; missing blade properties are those of the lens
     std::optional<double> blade_rounding, blade_rotation_deg;

@@ -2883,12 +2883,20 @@ class Scene:
         Triangles of zero area are dropped, with a warning in Scene.warnings. Raises InputError and SceneFileError.
         """
     @staticmethod
-    def load(path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = list()) -> Scene:
+    def load(
+        path: str | os.PathLike[str],
+        *,
+        scale: float = 1.0,
+        objects: Sequence[str] = list(),
+        variants: Sequence[str] = list(),
+    ) -> Scene:
         """
-        load(path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = []) -> Scene
+        load(path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = [], variants: Sequence[str] = []) -> Scene
 
-        Reads a scene file: .obj (with its .mtl), .gltf, .glb or .ply.
-        scale: metres per unit of the file.
+        Reads a scene file: .obj (with its .mtl), .gltf, .glb, .ply, or a stage of USD (.usd, .usda, .usdc
+        or .usdz; realcam[usd]).
+        scale: metres per unit of the file; for a stage, a factor on its metersPerUnit.
+        variants: variants of a stage, such as "/Chair{color=red}".
         objects: names of nodes (in an OBJ file: of "o" or "g" statements) that become instances, with all their descendants,
           so that moved() can move them. The second of several nodes "car" is called "car.2".
         Minor faults of the file are listed in warnings. Only regular files are read. Raises SceneFileError, and
@@ -3026,6 +3034,18 @@ class Scene:
         """
         List of minor faults that the reader found, such as a missing texture.
         """
+
+def _read_glb(
+    path: str | os.PathLike[str], glb: bytes, warnings: Sequence[str], scale: float, objects: Sequence[str]
+) -> Scene:
+    """
+    Internal. Returns the Scene of the bytes of a .glb. path: names it in messages. warnings: precede those of the reader. scale, objects: see Scene.load.
+    """
+
+def _read_texture(path: str | os.PathLike[str], bytes: bytes) -> NDArray[np.uint8] | NDArray[np.float32]:
+    """
+    Internal. Returns the values of a picture as stored, (H, W, 4): uint8 or float32. path: its file; "": bytes are those of a PNG or JPEG. Raises ImageFileError.
+    """
 
 @final
 class RenderSettings:

@@ -11,7 +11,7 @@ from typing import Any
 
 from ._core import InputError, Scene, _did_you_mean
 
-SCENE_SUFFIXES = (".gltf", ".glb", ".obj", ".ply")
+SCENE_SUFFIXES = (".gltf", ".glb", ".obj", ".ply", ".usd", ".usda", ".usdc", ".usdz")
 
 
 @cache
@@ -63,8 +63,10 @@ def _load(*arguments: Any, **named: Any) -> Scene:
     return _read_scene(*arguments, **named)  # reports invalid arguments
 
 
-def _signature(path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = []) -> Scene:
-    return _load(path, scale=scale, objects=objects)
+def _signature(
+    path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = [], variants: Sequence[str] = []
+) -> Scene:
+    return _load(path, scale=scale, objects=objects, variants=variants)
 
 
 _load.__signature__ = inspect.signature(_signature)  # type: ignore[attr-defined]

@@ -31,10 +31,11 @@ Vec3d unit_vector(const char* what, const Triple& direction) {
     return (1 / size) * d;
 }
 
-Assembly load(const PathLike& path, double scale, const std::vector<std::string>& objects) {
+Assembly load(const PathLike& path, double scale, const std::vector<std::string>& objects,
+              const std::vector<std::string>& variants) {
     const std::string name = path_from(path);
     const Unlocked unlocked;
-    return io::read_scene(name, {scale, objects, heed_signals}, picture_readers().texture);
+    return io::read_scene(name, {scale, objects, heed_signals, variants}, picture_readers().texture);
 }
 
 /// Returns the scene after change(static geometry), a function of a Scene&. Throws InputError if the result is invalid.
@@ -130,9 +131,13 @@ every change returns a new Scene. Its materials and warnings are those of the st
 their own.)");
     def_value(scene_class);
     scene_class
-        .def_static("load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
-                    R"(Reads a scene file: .obj (with its .mtl), .gltf, .glb or .ply.
-scale: metres per unit of the file.
+        .def_static(
+            "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
+            "variants"_a = std::vector<std::string>{},
+            R"(Reads a scene file: .obj (with its .mtl), .gltf, .glb, .ply, or a stage of USD (.usd, .usda, .usdc
+or .usdz; realcam[usd]).
+scale: metres per unit of the file; for a stage, a factor on its metersPerUnit.
+variants: variants of a stage, such as "/Chair{color=red}".
 objects: names of nodes (in an OBJ file: of "o" or "g" statements) that become instances, with all their descendants,
   so that moved() can move them. The second of several nodes "car" is called "car.2".
 Minor faults of the file are listed in warnings. Only regular files are read. Raises SceneFileError, and
@@ -176,6 +181,7 @@ Raises InputError.)")
             "List of minor faults that the reader found, such as a missing texture.")
         .def("__repr__", [](const Assembly& s) { return text_of(s); });
     bind_scene_arrays(scene_class);
+    bind_stages(m);
     bind_instances(scene_class);
     bind_scene_materials(scene_class);
 }

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 #include <stdexcept>
+#include <utility>
 
 #include "../../error.hpp"
-#include "../files/regular_file.hpp"
 #include "../text/printable.hpp"
 
 namespace realcam::io {
@@ -70,8 +70,8 @@ std::string_view GltfDocument::json_text() {
     return json.substr(0, json.find_last_not_of('\0') + 1);
 }
 
-GltfDocument::GltfDocument(const std::string& path, Checkpoint& checkpoint)
-    : path_(path), file_(read_whole_file(path, checkpoint)) {
+GltfDocument::GltfDocument(const std::string& path, std::string bytes, Checkpoint& checkpoint)
+    : path_(path), file_(std::move(bytes)) {
     try {
         root_ = Json::parse(json_text(), checkpoint);
     } catch (const Error&) {

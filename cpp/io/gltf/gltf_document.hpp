@@ -11,9 +11,9 @@ namespace realcam::io {
 /// JSON of a .gltf or .glb, and the binary chunk of a .glb.
 class GltfDocument {
 public:
-    /// Reads the file. Throws FileError, and SceneFileError if it is not valid glTF 2.0 or requires an unsupported
-    /// extension.
-    GltfDocument(const std::string& path, Checkpoint& checkpoint);
+    /// Parses the bytes of a .gltf or .glb; `path` names it in messages. Throws SceneFileError if they are not valid
+    /// glTF 2.0 or require an unsupported extension.
+    GltfDocument(const std::string& path, std::string bytes, Checkpoint& checkpoint);
 
     const std::string& path() const { return path_; }
     /// The whole JSON object.

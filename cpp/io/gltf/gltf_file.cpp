@@ -1,8 +1,10 @@
 #include "gltf_file.hpp"
 
 #include <optional>
+#include <utility>
 
 #include "../../error.hpp"
+#include "../files/regular_file.hpp"
 #include "gltf_meshes.hpp"
 #include "gltf_nodes.hpp"
 #include "gltf_readers.hpp"
@@ -56,7 +58,11 @@ void add_meshes(FileScene& scene, const GltfDocument& document, GltfAccessors& a
 }  // namespace
 
 FileScene read_gltf(const std::string& path, Checkpoint& checkpoint) {
-    const GltfDocument document(path, checkpoint);
+    return parse_gltf(path, read_whole_file(path, checkpoint), checkpoint);
+}
+
+FileScene parse_gltf(const std::string& path, std::string bytes, Checkpoint& checkpoint) {
+    const GltfDocument document(path, std::move(bytes), checkpoint);
     GltfBuffers buffers(document, checkpoint);
     GltfAccessors accessors(document, buffers, checkpoint);
     FileScene scene;

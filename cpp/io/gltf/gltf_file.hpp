@@ -10,4 +10,7 @@ namespace realcam::io {
 /// are animated by the file's first animation. Throws FileError, and SceneFileError that names the element.
 FileScene read_gltf(const std::string& path, Checkpoint& checkpoint);
 
+/// read_gltf for the bytes of a file. `path`: names them in messages; files are found beside it.
+FileScene parse_gltf(const std::string& path, std::string bytes, Checkpoint& checkpoint);
+
 }  // namespace realcam::io

@@ -16,7 +16,7 @@ from ..number_text import number_text
 from .command_words import in_known_spelling
 from .completions import completion_of
 
-SHOT_HELP = "A shot file (.toml), a scene file (.obj, .gltf, .glb or .ply), or the name of a bundled shot: demo"
+SHOT_HELP = "A shot file (.toml), a scene file (.obj, .gltf, .glb, .ply or .usd), or the name of a bundled shot: demo"
 ShotName = Annotated[Path, typer.Argument(help=SHOT_HELP, metavar="SCENE")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print only warnings and errors")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]

@@ -1,0 +1,207 @@
+"""Cameras of a stage, and their settings as keys of shot files."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pxr import Gf, Sdf, Usd, UsdGeom
+
+from .._core import Lens, RealcamError
+from ..shot import toml_value
+from .assets import asset_of
+from .glb import Json
+from .stage import OpenStage, children_of, open_stage
+
+# Attributes of a camera prim by which a stage keeps its lens. The focus is in metres, from the object plane to the
+# film; USD's own focusDistance is in units of the stage, from the camera's origin, which is the entrance pupil.
+LENS, F_NUMBER, FOCUS_M = "realcam:lens", "realcam:fNumber", "realcam:focusM"
+_DEFAULT_LENS = "double-gauss-50mm"  # ShotRequest::lens of cpp/shot/shot_request.hpp
+_FILM_MM = (1.0, 500.0)  # diagonals of films that are not taken for a mistake in the stage's units
+
+
+def camera_json(opened: OpenStage, prim: Usd.Prim) -> Json:
+    """Returns a camera for glTF."""
+    camera = UsdGeom.Camera(prim).GetCamera(opened.time)
+    field = camera.GetFieldOfView(Gf.Camera.FOVVertical)
+    _notice_what_is_left_out(opened, prim)
+    if camera.projection == Gf.Camera.Orthographic or not 0 < field < 180:
+        return {"type": "orthographic", "name": prim.GetName(), "orthographic": {"xmag": 1, "ymag": 1}}
+    return {"type": "perspective", "name": prim.GetName(), "perspective": {"yfov": math.radians(field), "znear": 0.1}}
+
+
+def settings_text(path: str, scale: float, variants: Sequence[str], camera: str) -> str:
+    """See realcam.usd.camera_settings."""
+    opened = open_stage(path, variants)
+    prim = _camera_named(opened, camera)
+    if prim is None:
+        return ""
+    settings = _Settings(opened, prim, scale * opened.metres_per_unit)
+    return "".join(f"{name} = {toml_value(name, value)}\n" for name, value in settings.values().items())
+
+
+def _camera_named(opened: OpenStage, name: str) -> Usd.Prim | None:
+    """Returns the camera that realcam.Scene.cameras calls by this name, or the first perspective camera for "".
+
+    The second of several cameras "main" is "main.2".
+    """
+    counts: dict[str, int] = {}
+    stack = list(reversed(children_of(opened.stage.GetPseudoRoot())))
+    while stack:
+        prim = stack.pop()
+        stack += reversed(children_of(prim))
+        opened.count(prim, 0)
+        if not prim.IsA(UsdGeom.Camera):
+            continue
+        base = prim.GetName()
+        counts[base] = counts.get(base, 0) + 1
+        shown = base if counts[base] == 1 else f"{base}.{counts[base]}"
+        is_perspective = camera_json(opened, prim)["type"] == "perspective"
+        if shown == name or (not name and is_perspective):
+            return prim
+    return None
+
+
+def film_mm(opened: OpenStage, prim: Usd.Prim) -> tuple[float, float]:
+    """Returns width and height of a camera's film. Apertures are in tenths of the stage's unit: in mm for a unit of
+    1 cm."""
+    camera, to_mm = UsdGeom.Camera(prim), _mm_per_tenth(opened)
+    attributes = camera.GetHorizontalApertureAttr(), camera.GetVerticalApertureAttr()
+    width, height = (to_mm * float(attribute.Get(opened.time) or 0) for attribute in attributes)
+    return width, height
+
+
+def _mm_per_tenth(opened: OpenStage) -> float:
+    return 100 * opened.metres_per_unit
+
+
+def _is_film(film: tuple[float, float]) -> bool:
+    return min(film) > 0 and _FILM_MM[0] <= math.hypot(*film) <= _FILM_MM[1]
+
+
+def _pupil_to_film_m(name: str) -> float:
+    """Returns the distance from the entrance pupil of a lens to its film; 0 if it cannot be read or has none."""
+    try:
+        lens = Lens.load(name)
+        pupil_mm = lens.first_order().entrance_pupil_position_mm
+        length_mm = sum(surface.thickness_mm for surface in lens.surfaces[:-1]) + lens.film_distance_mm
+    except RealcamError:  # the message comes when the shot reads the lens
+        return 0.0
+    distance_m = (length_mm - pupil_mm) / 1000
+    return distance_m if math.isfinite(distance_m) else 0.0
+
+
+def _notice_what_is_left_out(opened: OpenStage, prim: Usd.Prim) -> None:
+    camera = UsdGeom.Camera(prim)
+    film = film_mm(opened, prim)
+    if camera.GetHorizontalApertureAttr().HasAuthoredValue() and not _is_film(film):
+        opened.notices.add(
+            prim.GetPath(),
+            f"its film of {film[0]:g} x {film[1]:g} mm, by the stage's unit, is left out; the lens's film is used",
+        )
+    for attribute, text in (
+        (camera.GetClippingPlanesAttr(), "clippingPlanes are left out"),
+        (camera.GetShutterOpenAttr(), "shutter:open and shutter:close are left out; the exposure time counts"),
+        (camera.GetShutterCloseAttr(), "shutter:open and shutter:close are left out; the exposure time counts"),
+        (camera.GetStereoRoleAttr(), "stereoRole is left out"),
+        (camera.GetExposureResponsivityAttr(), "exposure:responsivity is left out"),
+        (camera.GetExposureFStopAttr(), "exposure:fStop is left out; fStop counts"),
+    ):
+        if attribute.HasAuthoredValue():
+            opened.notices.add(prim.GetPath(), text)
+    for attribute in (camera.GetExposureAttr(), camera.GetExposureIsoAttr()):
+        if attribute.HasAuthoredValue() and not camera.GetExposureTimeAttr().HasAuthoredValue():
+            opened.notices.add(prim.GetPath(), "its exposure is metered; exposure and exposure:iso need exposure:time")
+
+
+@dataclass
+class _Settings:
+    """Settings of a camera. metres: metres per unit of the stage."""
+
+    opened: OpenStage
+    prim: Usd.Prim
+    metres: float
+
+    def values(self) -> dict[str, Any]:
+        """Returns keys of shot files with their values."""
+        camera = UsdGeom.Camera(self.prim)
+        values: dict[str, Any] = {}
+        self._add_lens(values)
+        has_film = camera.GetHorizontalApertureAttr().HasAuthoredValue()
+        film = film_mm(self.opened, self.prim)
+        if has_film and _is_film(film):
+            values["film_mm"] = list(film)
+            to_mm = _mm_per_tenth(self.opened)
+            shift = [to_mm * self._number(f"{side}ApertureOffset") for side in ("horizontal", "vertical")]
+            if any(shift):
+                values["film_shift_mm"] = shift
+        self._add_focus(values)
+        f_number = self._number(F_NUMBER) or self._number("fStop")
+        if f_number > 0:
+            values["f_number"] = f_number
+        self._add_exposure(values)
+        self._add_keys(values)
+        return values
+
+    def _add_lens(self, values: dict[str, Any]) -> None:
+        """Adds the lens: a bundled lens by its name, or a lens file."""
+        attribute = self.prim.GetAttribute(LENS)
+        lens = attribute.Get(self.opened.time) if attribute else None
+        if isinstance(lens, Sdf.AssetPath):
+            asset = asset_of(self.opened, lens)
+            if not asset.path and os.sep in lens.path:
+                raise self.opened.fail(attribute.GetPath(), f"expected a lens file; found no file {lens.path}")
+            lens = asset.path or lens.path
+        if lens is None:
+            return
+        if not isinstance(lens, str) or not lens:
+            raise self.opened.fail(attribute.GetPath(), f"expected the name of a lens or its file; found {lens!r:.60}")
+        values["lens"] = lens
+
+    def _add_focus(self, values: dict[str, Any]) -> None:
+        focus_m, distance = self._number(FOCUS_M), self._number("focusDistance")
+        if focus_m > 0:
+            values["focus_m"] = focus_m
+        elif distance > 0:
+            values["focus_m"] = distance * self.metres + _pupil_to_film_m(values.get("lens", _DEFAULT_LENS))
+
+    def _add_exposure(self, values: dict[str, Any]) -> None:
+        """Adds the exposure time and the sensitivity, if the camera has an exposure time. `exposure` is a factor 2^n on
+        the sensitivity."""
+        camera = UsdGeom.Camera(self.prim)
+        if not camera.GetExposureTimeAttr().HasAuthoredValue():
+            return
+        values["exposure_time_s"] = self._number("exposure:time")
+        values["iso"] = self._number("exposure:iso") * 2 ** self._number("exposure")
+
+    def _add_keys(self, values: dict[str, Any]) -> None:
+        """Adds keyframes of focus and f-number, if these have values over time."""
+        keys: dict[float, dict[str, float]] = {}
+        offset_m = _pupil_to_film_m(values.get("lens", _DEFAULT_LENS))
+        for name, key, factor, offset in (
+            ("focusDistance", "focus_m", self.metres, offset_m),
+            ("fStop", "f_number", 1.0, 0.0),
+        ):
+            attribute = self.prim.GetAttribute(name)
+            if key not in values or attribute.GetNumTimeSamples() < 2:
+                continue
+            del values[key]
+            for time in attribute.GetTimeSamples():
+                number = self._number(name, time)
+                if number > 0:
+                    keys.setdefault(self.opened.seconds(time), {})[key] = number * factor + offset
+        if keys:
+            values["key"] = [{"time_s": time, **keys[time]} for time in sorted(keys)]
+
+    def _number(self, name: str, time: float | None = None) -> float:
+        """Returns the number of an attribute; 0 if the camera lacks it. Raises SceneFileError for other values."""
+        attribute = self.prim.GetAttribute(name)
+        value = attribute.Get(self.opened.time if time is None else Usd.TimeCode(time)) if attribute else None
+        if value is None:
+            return 0.0
+        if not isinstance(value, (int, float)) or not math.isfinite(value):
+            raise self.opened.fail(attribute.GetPath(), f"expected a finite number; found {value!r:.60}")
+        return float(value)
