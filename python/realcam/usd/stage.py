@@ -70,7 +70,7 @@ class OpenStage:
 
     def seconds(self, time_code: float) -> float:
         """Returns the time of a time code in seconds; the stage begins at 0."""
-        return (time_code - self.stage.GetStartTimeCode()) / self.stage.GetTimeCodesPerSecond()
+        return float((time_code - self.stage.GetStartTimeCode()) / self.stage.GetTimeCodesPerSecond())
 
     def count(self, prim: Usd.Prim, depth: int) -> None:
         """Counts a prim that is read, at a depth of the hierarchy. Raises SceneFileError beyond the limits."""

@@ -115,9 +115,9 @@ def _vertex_points(rows: Floats, smooth: Floats, edges: _Edges, corner_values: F
     others = _sums(np.concatenate([ends[:, 0], ends[:, 1]]), rows[np.concatenate([ends[:, 1], ends[:, 0]])], count)
     crease = 0.75 * rows + others / 8
     mean = np.bincount(ends.ravel(), np.repeat(values, 2), minlength=count) / np.maximum(number, 1)
-    out = smooth.copy()
+    out: Floats = smooth.copy()
     on_crease = number == 2
-    weight = np.clip(mean, 0, 1)[:, None]
+    weight: Floats = np.clip(mean, 0, 1)[:, None]
     out[on_crease] = (weight * crease + (1 - weight) * smooth)[on_crease]
     at_corner = number > 2
     out[at_corner] = (weight * rows + (1 - weight) * smooth)[at_corner]
