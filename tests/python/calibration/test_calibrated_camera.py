@@ -47,7 +47,7 @@ def test_chief_rays_have_the_directions_of_the_calibration(model: str) -> None:
 
 def test_a_fisheye_of_190_degrees() -> None:
     made_from = fisheye()
-    camera = made_from.camera("fisheye-6mm-220deg", film_width_mm=16.0)
+    camera = made_from.camera("fisheye-6mm-220deg", film_width_mm=31.0)
     error = made_from.geometry_error(camera)
     assert error.middle_px < 0.01
     assert error.everywhere_px < 0.05
