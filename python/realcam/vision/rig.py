@@ -12,12 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import Camera, InputError, RenderSettings, Scene, Sensor
+from ..calibration import Calibration
 from ..files import write_whole
 from ..image import Image
 from ..pickling import set_checked_state
 from ..raw_image import RawImage
 from ..settings import settings_of
 from ..shot import Shot
+from .calibrated_rig import cameras_in_rig
 from .camera_json import camera_json
 from .colmap import save_colmap_of_rig
 from .conventions import relative_pose
@@ -160,6 +162,20 @@ class Rig:
             look_at = (x - side * np.sin(toe_in), 0.0, -np.cos(toe_in))
             members[name] = RigCamera(camera.replace(position=(x, 0, 0), look_at=look_at, up=(0, 1, 0)))
         return cls(members, _pose_of(camera))
+
+    @classmethod
+    def of_calibrations(cls, calibrations: Mapping[str, Calibration], **settings: Any) -> Rig:
+        """Returns a rig of calibrated cameras, posed by the extrinsics of their calibrations.
+
+        rig = rc.Rig.of_calibrations(rc.Calibration.load_all("camchain.yaml"), focus_m=3)
+
+        calibrations: by the names of the cameras. settings: arguments of Calibration.camera, for all cameras, such as
+        lens, film_width_mm, focus_m and exposure_time_s. The frame of the rig is that of the first camera: x right,
+        y up, z backward, origin at its centre of projection; the rig stands at the origin of the scene, see moved.
+
+        Raises InputError, also if the calibrations do not state their relative poses.
+        """
+        return cls({name: RigCamera(camera) for name, camera in cameras_in_rig(calibrations, settings).items()})
 
     @property
     def cameras(self) -> dict[str, Camera]:
