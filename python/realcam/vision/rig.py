@@ -161,7 +161,7 @@ class Rig:
             x = 0.5 * side * baseline_m
             look_at = (x - side * np.sin(toe_in), 0.0, -np.cos(toe_in))
             members[name] = RigCamera(camera.replace(position=(x, 0, 0), look_at=look_at, up=(0, 1, 0)))
-        return cls(members, _pose_of(camera))
+        return cls(members, pose_of(camera))
 
     @classmethod
     def of_calibrations(cls, calibrations: Mapping[str, Calibration], **settings: Any) -> Rig:
@@ -338,7 +338,7 @@ def _nested(poses: Array) -> Any:
     return tuple(map(_nested, poses)) if poses.ndim else float(poses)
 
 
-def _pose_of(camera: Camera) -> Array:
+def pose_of(camera: Camera) -> Array:
     """Returns the (4, 4) matrix from a camera's frame to the scene.
 
     The frame has the axes x right, y up, z backward, and its origin at the film centre.
