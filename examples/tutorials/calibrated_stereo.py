@@ -59,8 +59,9 @@ print(f"its own pupil wanders by {error.pupil_shift_mm:.3f} mm, which is left ou
 # The data set
 # ------------
 #
-# A recipe names the calibration, and the distance to the second camera. The sensor adds its noise. Each picture has a
-# chessboard somewhere, whose corners are labelled. Without an executor, ``make`` uses processes, one for each core.
+# A recipe names the calibration, and the distance to the second camera. The sensor adds its noise; so small a picture
+# has large pixels, which a low ISO would fill. Each picture has a chessboard somewhere, whose corners are labelled.
+# Without an executor, ``make`` uses processes, one for each core.
 
 (folder / "recipe.toml").write_text("""format = 1
 count = 50
@@ -68,7 +69,7 @@ calibration = "camera.yml"
 lenses = ["machine-vision-10mm"]
 stereo_m = 0.12
 sensor = "sony-imx071-color"
-iso = [200, 800]
+iso = [3200, 6400]
 f_stops = [2, 4]
 speed_m_s = [0, 1]
 board = [6, 4]
