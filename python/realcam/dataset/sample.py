@@ -45,7 +45,7 @@ def make_sample(recipe: Recipe, number: int, device: str, threads: int) -> dict[
 
 @dataclass(frozen=True)
 class _Picture:
-    """What one camera photographs. calibration: of the camera; None: its model is fitted."""
+    """A camera in a random scene. calibration: that of the camera; None: a model is fitted for its label."""
 
     recipe: Recipe
     seen: RandomScene
