@@ -12,10 +12,18 @@ from typing import Any
 
 import numpy as np
 
-from .._core import InputError, RenderSettings, Sensor, _did_you_mean, _read_toml
+from .._core import InputError, RealcamError, RenderSettings, Sensor, _did_you_mean, _read_toml
+from ..calibration import Calibration
+from .calibrated import calibrations_in
 
 MOVES_FOR_S = 1.0  # duration of all motion in a scene, in seconds; every exposure and next picture must lie within it
 LABELS = ("depth", "mask", "motion", "flow")
+DEPTHS = ("axis", "ray")
+DEFAULT_SIZE = (640, 480)
+_LENSES = ("double-gauss-50mm", "tessar-50mm", "sonnar-50mm", "phone-4mm", "fisheye-6mm-220deg")
+# Keys that say which cameras there are; the values that other keys may have depend on them.
+_CAMERA_KEYS = ("calibration", "calibration_camera", "rig")
+_USED_SUFFIXES = ("mask", "next", "flow_visible")  # files of a sample that a camera's name could be taken for
 # File names have six digits for the picture's number; beyond the other limits a picture takes hours.
 _MAX = {"count": 10**6, "size": 32768, "objects": 1000, "board": 1000, "shard_size": 10**6}
 
@@ -24,25 +32,32 @@ _MAX = {"count": 10**6, "size": 32768, "objects": 1000, "board": 1000, "shard_si
 class Recipe:
     """Parameters of a data set. A pair of numbers is a range that is sampled uniformly, except that of iso.
 
-    count: number of pictures. size: columns and rows of a picture. seed: the same recipe and seed give the same
-    pictures. lenses: names or files; one is chosen at random for each picture. f_stops: range of the factor, 1 or more,
-    by which the lens's f-number is multiplied. objects: range of the number of objects in a scene. models: files of the
-    objects (.glb, .obj, ...) by category, scaled so that their largest extent is one metre before each object gets its
-    own size; {}: boxes, balls and pyramids. speed_m_s: speed of the objects along the floor, in m/s. camera_speed_m_s,
+    count: number of pictures. size: columns and rows of a picture; (): those of the calibration, or 640 and 480. seed:
+    the same recipe and seed give the same pictures. lenses: names or files; one is chosen at random for each picture;
+    "auto": the bundled lens that resembles the calibration most, which is the default with a calibration.
+    f_stops: range of the factor, 1 or more, by which the lens's f-number is multiplied. objects: range of the number
+    of objects in a scene. models: files of the objects (.glb, .obj, ...) by category, scaled so that their largest
+    extent is one metre before each object gets its own size; {}: boxes, balls and pyramids.
+    speed_m_s: speed of the objects along the floor, in m/s. camera_speed_m_s,
     camera_turn_deg_s: speed in m/s and angular speed in degrees/s of the camera, in a random direction and about a
     random axis. next_after_s: time from a picture to the next one, which is the target of the flow. readout_time_s: of
     a rolling shutter; 0: all rows are exposed at once. iso: range, whose logarithm is sampled uniformly. sensor: name
     or file of the camera's sensor. board: columns and rows of squares of a calibration board in each scene; (): no
     board. square_m: side of its squares, in metres. labels: additional outputs, any of depth, mask, motion and flow;
-    flow also writes the next picture. spp: samples per pixel. shard_size: pictures per tar file.
+    flow also writes the next picture. depth: "axis", depth along the axis from the film, or "ray", distance from the
+    centre of projection along the pixel's ray. spp: samples per pixel. shard_size: pictures per tar file.
+    calibration: file with the calibration of the camera, whose geometry the pictures have. calibration_camera: name of
+    one of several cameras in it. rig: file with the calibrations and relative poses of several cameras, which take
+    pictures at the same time. film_width_mm: width of the calibrated film; 0: as Calibration.camera chooses it.
+    stereo_m: distance in metres to a second camera of the same kind, to the right; 0: no second camera.
 
-    Raises InputError.
+    Raises InputError and CalibrationFileError.
     """
 
     count: int = 200
-    size: tuple[int, int] = (640, 480)
+    size: tuple[int, ...] = ()
     seed: int = 0
-    lenses: tuple[str, ...] = ("double-gauss-50mm", "tessar-50mm", "sonnar-50mm", "phone-4mm", "fisheye-6mm-220deg")
+    lenses: tuple[str, ...] = _LENSES
     f_stops: tuple[float, float] = (1.0, 3.0)
     objects: tuple[int, int] = (3, 8)
     models: Mapping[str, str] = field(default_factory=dict)
@@ -56,8 +71,14 @@ class Recipe:
     board: tuple[int, ...] = ()
     square_m: float = 0.04
     labels: tuple[str, ...] = ("depth", "mask")
+    depth: str = "axis"
     spp: int = 24
     shard_size: int = 100
+    calibration: str = ""
+    calibration_camera: str = ""
+    rig: str = ""
+    film_width_mm: float = 0.0
+    stereo_m: float = 0.0
 
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
@@ -69,7 +90,9 @@ class Recipe:
         for name, limit in _MAX.items():
             if max(np.atleast_1d(getattr(self, name)), default=0) > limit:
                 raise InputError(f"{name} must be {limit} or less")
-        if min(self.size) < 1 or min(self.objects) < 1 or self.seed < 0 or self.readout_time_s < 0:
+        if self.size and len(self.size) != 2:
+            raise InputError(f"size must be two whole numbers; it is {self.size!r:.40}")
+        if min(self.size, default=1) < 1 or min(self.objects) < 1 or self.seed < 0 or self.readout_time_s < 0:
             raise InputError("size and objects must be 1 or more, seed and readout_time_s 0 or more")
         for name in ("f_stops", "objects", "speed_m_s", "camera_speed_m_s", "camera_turn_deg_s", "iso"):
             low, high = getattr(self, name)
@@ -84,7 +107,50 @@ class Recipe:
         for label in self.labels:
             if label not in LABELS:
                 raise InputError(f'labels: "{label:.40}" is unknown; expected {", ".join(LABELS)}')
+        if self.depth not in DEPTHS:
+            raise InputError(f'depth: "{self.depth:.40}" is unknown; expected {", ".join(DEPTHS)}')
         Sensor.load(self.sensor)
+        self._check_cameras()
+
+    def _check_cameras(self) -> None:
+        """Checks the keys of calibrations against one another. Raises InputError."""
+        if self.film_width_mm < 0 or self.stereo_m < 0:
+            raise InputError("film_width_mm and stereo_m must be 0 or more")
+        if self.rig and (self.calibration or self.stereo_m):
+            raise InputError("rig excludes calibration and stereo_m: its file states all cameras and their poses")
+        if self.calibration_camera and not self.calibration:
+            raise InputError("calibration_camera belongs to a calibration, and there is none")
+        if not self.calibration and not self.rig:
+            if self.film_width_mm or "auto" in self.lenses:
+                raise InputError('film_width_mm and the lens "auto" are for a calibration or rig, and there is none')
+            return
+        if self.lenses == _LENSES:
+            object.__setattr__(self, "lenses", ("auto",))
+        for name, calibration in self.calibrations.items():
+            width, height = calibration.size
+            if self.size and abs(self.size[0] * height - self.size[1] * width) > 0.5 * width:
+                raise InputError(
+                    f"size must have the aspect of the calibration, {width} x {height} pixels; it is "
+                    f"{self.size[0]} x {self.size[1]}"
+                )
+            if self.rig and (not re.fullmatch("[A-Za-z0-9_-]{1,60}", name) or name in _USED_SUFFIXES):
+                raise InputError(
+                    f'rig: camera "{name:.40}" cannot name files; expected letters, digits, _ and -, and none of '
+                    f"{', '.join(_USED_SUFFIXES)}"
+                )
+
+    @property
+    def calibrations(self) -> Mapping[str, Calibration]:
+        """Calibrations of all cameras by name, with the picture sizes of their file; empty without a calibration."""
+        if not self.calibration and not self.rig:
+            return {}
+        return calibrations_in(self.rig or self.calibration, self.calibration_camera, bool(self.rig))
+
+    def picture_size(self, camera: str = "") -> tuple[int, int]:
+        """Returns the columns and rows of a camera's pictures. camera: a key of `calibrations`."""
+        if self.size:
+            return self.size[0], self.size[1]
+        return self.calibrations[camera].size if camera in self.calibrations else DEFAULT_SIZE
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Recipe:
@@ -100,23 +166,14 @@ class Recipe:
         for key in values:
             if key not in _KINDS:
                 raise InputError(f'{name}:{lines[key]}: unknown key "{key:.40}"{_did_you_mean(key, list(_KINDS))}')
-        for key, value in values.items():
+        values = {key: _located(Path(path).parent, key, value) for key, value in values.items()}
+        cameras = {key: values[key] for key in _CAMERA_KEYS if key in values}
+        for key, value in (cameras | values).items():
             try:
-                dataclasses.replace(cls(), **{key: value})
-            except InputError as error:
+                cls(**(cameras | {key: value}))
+            except RealcamError as error:
                 raise InputError(f"{name}:{lines[key]}: {error}") from None
-        recipe = cls(**values)
-        folder = Path(path).parent
-
-        def beside(file: str) -> str:
-            return str(folder / file) if re.search(r"[/.]", file) else file
-
-        return dataclasses.replace(
-            recipe,
-            lenses=tuple(map(beside, recipe.lenses)),
-            models={category: str(folder / file) for category, file in recipe.models.items()},
-            sensor=beside(recipe.sensor),
-        )
+        return cls(**values)
 
     @property
     def categories(self) -> tuple[str, ...]:
@@ -127,6 +184,22 @@ class Recipe:
 _KINDS: dict[str, str] = {
     f.name: str(f.type).replace("Mapping[str, str]", "texts by name") for f in dataclasses.fields(Recipe)
 }
+
+
+def _located(folder: Path, key: str, value: Any) -> Any:
+    """Returns the value of a key with its paths relative to the recipe's folder; values of other types unchanged."""
+
+    def beside(file: Any) -> Any:
+        is_path = isinstance(file, str) and re.search(r"[/.]", file)
+        return str(folder / file) if is_path else file
+
+    if key == "lenses" and isinstance(value, list):
+        return [beside(file) for file in value]
+    if key == "models" and isinstance(value, Mapping):
+        return {name: str(folder / file) if isinstance(file, str) else file for name, file in value.items()}
+    if key in ("calibration", "rig") and isinstance(value, str) and value:
+        return str(folder / value)
+    return beside(value) if key == "sensor" else value
 
 
 def _converted(kind: str, name: str, value: Any) -> Any:

@@ -10,6 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Camera, Film, InputError, Lens, Material, Scene
+from ..calibration.camera.calibrated_camera import posed
+from ..vision.rig import Rig, RigCamera, pose_of
+from .calibrated import calibrated_camera, poses_from_first
 from .recipe import MOVES_FOR_S, Recipe
 
 Array = NDArray[np.float64]
@@ -165,29 +168,74 @@ def _view_from(distance: float, rng: np.random.Generator) -> tuple[Array, Array]
     return target + distance * direction, target
 
 
-def _is_in_a_body(seen: RandomScene, position: Array) -> bool:
-    """Returns True if a point lies within 0.05 m of an object's bounding sphere, that of a cube of its size."""
+def _is_in_a_body(seen: RandomScene, position: Array, margin_m: float) -> bool:
+    """Returns True if a point lies within a margin of an object's bounding sphere, that of a cube of its size."""
     sizes = 2 * seen.centres_m[:, 1]  # the objects stand on the floor
-    return bool((np.linalg.norm(seen.centres_m - position, axis=1) < 0.87 * sizes + 0.05).any())
+    return bool((np.linalg.norm(seen.centres_m - position, axis=1) < 0.87 * sizes + margin_m).any())
 
 
-def random_camera(recipe: Recipe, seen: RandomScene, rng: np.random.Generator) -> Camera:
-    """Returns a camera with a random lens, f-number and focus.
+def random_cameras(recipe: Recipe, seen: RandomScene, rng: np.random.Generator) -> dict[str, Camera]:
+    """Returns the cameras that take a picture together, by name, with a random lens, f-number and focus.
 
-    It lies outside of all objects and is directed at a point near the floor's centre.
+    The first one is named "" unless it belongs to a rig. It lies outside of all objects and is directed at a point near
+    the floor's centre; the others are fixed to it.
     """
+    lens = recipe.lenses[rng.integers(len(recipe.lenses))]
+    names = list(recipe.calibrations) if recipe.rig else ["", "right"] if recipe.stereo_m else [""]
+    unposed = {name: _camera_at_origin(recipe, name, lens) for name in names}
+    poses = poses_from_first(recipe.calibrations, unposed[names[0]]) if recipe.rig else {}
+    reach_m = max((float(np.linalg.norm(pose[:3, 3])) for pose in poses.values()), default=recipe.stereo_m)
+    first = _random_camera(recipe, unposed[names[0]], seen, reach_m, rng)
+    if len(names) == 1:
+        return {names[0]: first}
+    if recipe.rig:
+        poses = poses_from_first(recipe.calibrations, first)  # focusing moves the centre of projection
+        members = {name: RigCamera(posed(_like(unposed[name], first), poses[name])) for name in names[1:]}
+    else:
+        x_m = recipe.stereo_m
+        right = first.replace(motion=[], position=(x_m, 0, 0), look_at=(x_m, 0, -1), up=(0, 1, 0))
+        members = {"right": RigCamera(right)}
+    keys = first.motion or [(0.0, first.position, first.look_at, first.up)]
+    rig_poses = [
+        pose_of(first.replace(motion=[], position=position, look_at=look_at, up=up))
+        for _, position, look_at, up in keys
+    ]
+    times_s = tuple(key[0] for key in first.motion)
+    return {names[0]: first, **Rig(members, rig_poses if times_s else rig_poses[0], times_s).cameras}
+
+
+def _camera_at_origin(recipe: Recipe, name: str, lens: str) -> Camera:
+    """Returns a camera of the recipe with a lens, before it is stopped down, focused and posed."""
+    if not recipe.calibrations:
+        loaded = _lens(lens)
+        return Camera(loaded, film=Film.for_lens(loaded, resolution=recipe.picture_size()))
+    is_rig = bool(recipe.rig)
+    of_file = name if is_rig else recipe.calibration_camera
+    size = recipe.picture_size(of_file)
+    return calibrated_camera(recipe.rig or recipe.calibration, of_file, is_rig, size, lens, recipe.film_width_mm)
+
+
+def _like(camera: Camera, first: Camera) -> Camera:
+    """Returns the camera with the f-number, or the nearest that its lens has, and the focus and ISO of another one."""
+    lens = camera.lens.stopped_down(max(camera.lens.f_number, first.lens.f_number))
+    lens = lens.focused(max(1.05 * lens.nearest_focus_m, first.lens.focus_distance_m))
+    return camera.replace(lens=lens, iso=first.iso, readout_time_s=first.readout_time_s)
+
+
+def _random_camera(
+    recipe: Recipe, camera: Camera, seen: RandomScene, reach_m: float, rng: np.random.Generator
+) -> Camera:
+    """Returns the camera with a random f-number, focus and pose. reach_m: distance of the farthest camera beside it."""
     from scipy.spatial.transform import Rotation  # slow to load
 
-    lens = _lens(recipe.lenses[rng.integers(len(recipe.lenses))])
-    lens = lens.stopped_down(float(lens.f_number * rng.uniform(*recipe.f_stops)))
-    film = Film.for_lens(lens, resolution=recipe.size)
+    lens = camera.lens.stopped_down(float(camera.lens.f_number * rng.uniform(*recipe.f_stops)))
     iso = float(np.exp(rng.uniform(*np.log(recipe.iso))))
-    camera = Camera(lens, film=film, iso=iso, readout_time_s=recipe.readout_time_s)
+    camera = camera.replace(lens=lens, iso=iso, readout_time_s=recipe.readout_time_s)
     # At this distance the picture's width covers about two metres; a fisheye is closer.
     half_angle = np.radians(min(camera.field_of_view_deg.horizontal, 120) / 2)
     distance = max(0.6, rng.uniform(0.8, 1.3) / np.tan(half_angle))
     position, target = _view_from(distance, rng)
-    while _is_in_a_body(seen, position):
+    while _is_in_a_body(seen, position, 0.05 + reach_m):
         distance *= 1.05
         position, target = _view_from(distance, rng)
     lens = lens.focused(max(1.05 * lens.nearest_focus_m, float(distance * rng.uniform(0.8, 1.2))))

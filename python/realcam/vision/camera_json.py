@@ -9,16 +9,22 @@ from collections.abc import Iterable
 from typing import Any
 
 from .._core import Camera, __version__
+from ..calibration import Calibration
 from ..files import write_whole
+from ..json_values import json_value
 from . import conventions
 from .fit import CameraModelFit
 from .models import distortion_coefficients, model_named
 
 
-def camera_json(camera: Camera, fits: Iterable[CameraModelFit] = ()) -> dict[str, Any]:
+def camera_json(
+    camera: Camera, fits: Iterable[CameraModelFit] = (), calibration: Calibration | None = None
+) -> dict[str, Any]:
     """Returns pose and intrinsics as values for json.dump; docs/vision.md describes each entry. Infinity becomes None.
 
-    fits: results of fit_camera_model for this camera. Raises InputError if the entrance pupil lies at infinity.
+    fits: results of fit_camera_model for this camera. calibration: that of Calibration.camera for a camera made by it,
+    as it was loaded, even if the camera's picture has another size. Raises InputError if the entrance pupil lies at
+    infinity.
     """
     lens, film = camera.lens, camera.film
     rotation, translation = camera.world_to_camera
@@ -49,12 +55,27 @@ def camera_json(camera: Camera, fits: Iterable[CameraModelFit] = ()) -> dict[str
         "camera_matrix": matrix.tolist(),
         "opencv_camera_matrix": conventions.opencv_matrix(matrix).tolist(),
         "fits": [_fit_json(fit) for fit in fits],
+        **({} if calibration is None else {"calibration": _calibration_json(calibration)}),
     }
 
 
 def save_camera_json(path: str | os.PathLike[str], camera: Camera, fits: Iterable[CameraModelFit] = ()) -> None:
     """Writes the values of camera_json to a JSON file. Raises InputError, ImageFileError."""
     write_whole(path, (json.dumps(camera_json(camera, fits), indent=1) + "\n").encode())
+
+
+def _calibration_json(calibration: Calibration) -> dict[str, Any]:
+    return {
+        "format": calibration.format,
+        "camera": calibration.name,
+        "model": calibration.model,
+        "width": calibration.size[0],
+        "height": calibration.size[1],
+        "camera_matrix": calibration.camera_matrix.tolist(),
+        "pixel_origin": calibration.pixel_origin,
+        "file_values": json_value(dict(calibration.file_values)),
+        "largest_angle_deg": calibration.largest_angle_deg,
+    }
 
 
 def _fit_json(fit: CameraModelFit) -> dict[str, Any]:

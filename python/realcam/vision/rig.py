@@ -12,12 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import Camera, InputError, RenderSettings, Scene, Sensor
+from ..calibration import Calibration
 from ..files import write_whole
 from ..image import Image
 from ..pickling import PickledByFields
 from ..raw_image import RawImage
 from ..settings import settings_of
 from ..shot import Shot
+from .calibrated_rig import cameras_in_rig
 from .camera_json import camera_json
 from .colmap import save_colmap_of_rig
 from .conventions import relative_pose
@@ -153,7 +155,21 @@ class Rig(PickledByFields):
             x = 0.5 * side * baseline_m
             look_at = (x - side * np.sin(toe_in), 0.0, -np.cos(toe_in))
             members[name] = RigCamera(camera.replace(position=(x, 0, 0), look_at=look_at, up=(0, 1, 0)))
-        return cls(members, _pose_of(camera))
+        return cls(members, pose_of(camera))
+
+    @classmethod
+    def of_calibrations(cls, calibrations: Mapping[str, Calibration], **settings: Any) -> Rig:
+        """Returns a rig of calibrated cameras, posed by the extrinsics of their calibrations.
+
+        rig = rc.Rig.of_calibrations(rc.Calibration.load_all("camchain.yaml"), focus_m=3)
+
+        calibrations: by the names of the cameras. settings: arguments of Calibration.camera, for all cameras, such as
+        lens, film_width_mm, focus_m and exposure_time_s. The frame of the rig is that of the first camera: x right,
+        y up, z backward, origin at its centre of projection; the rig stands at the origin of the scene, see moved.
+
+        Raises InputError, also if the calibrations do not state their relative poses.
+        """
+        return cls({name: RigCamera(camera) for name, camera in cameras_in_rig(calibrations, settings).items()})
 
     @property
     def cameras(self) -> dict[str, Camera]:
@@ -316,7 +332,7 @@ def _nested(poses: Array) -> Any:
     return tuple(map(_nested, poses)) if poses.ndim else float(poses)
 
 
-def _pose_of(camera: Camera) -> Array:
+def pose_of(camera: Camera) -> Array:
     """Returns the (4, 4) matrix from a camera's frame to the scene.
 
     The frame has the axes x right, y up, z backward, and its origin at the film centre.

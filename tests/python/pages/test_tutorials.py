@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import runpy
 import shutil
@@ -32,7 +33,7 @@ def run(name: str, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
 def test_every_tutorial_has_a_test() -> None:
     here = Path(__file__).read_text(encoding="utf-8")
     names = [path.stem for path in TUTORIALS.glob("*.py")]
-    assert len(names) == 5 and all(f"def test_{name}" in here for name in names)
+    assert len(names) == 6 and all(f"def test_{name}" in here for name in names)
 
 
 def middle(image: np.ndarray) -> np.ndarray:
@@ -96,6 +97,27 @@ def test_vision_engineer(monkeypatch: pytest.MonkeyPatch) -> None:
     assert dark.max() < bright.min()
     assert seen["fit"].rms_px < 0.1
     np.testing.assert_allclose(seen["depth_m"], 1.1, rtol=1e-6)  # float32 of a board across the axis
+
+
+@pytest.mark.picture_files
+def test_calibrated_stereo(monkeypatch: pytest.MonkeyPatch) -> None:
+    from realcam import dataset
+
+    make = dataset.make
+    monkeypatch.setattr(dataset, "make", lambda recipe, *of: make(dataclasses.replace(recipe, count=4), *of))
+    seen = run("calibrated_stereo", monkeypatch)
+    try:
+        assert seen["error"].everywhere_px < 0.05
+        assert {"right.png", "right.depth.npy", "flow.npy", "right.flow.npy"} <= seen["first"].keys()
+        assert seen["first"]["right.png"].shape == (240, 320, 3)
+        # A corner is symmetrical about its middle, so blur and tone leave its saddle. Perspective and other edges
+        # within 3 pixels displace it by some tenths, each to another side.
+        distances = seen["distances"]
+        assert len(distances) > 40
+        assert np.abs(np.median(distances, axis=0)).max() < 0.1
+        assert np.median(np.linalg.norm(distances, axis=1)) < 0.25
+    finally:
+        shutil.rmtree(seen["folder"])
 
 
 def test_renderer(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -20,7 +20,7 @@ import pytest
 import realcam as rc
 from realcam.dataset import Recipe, make, samples
 from realcam.dataset.pictures import codes_of, png_bytes
-from realcam.dataset.scenes import random_camera, random_scene
+from realcam.dataset.scenes import random_cameras, random_scene
 from realcam.dataset.shards import DatasetFolder
 
 pytestmark = pytest.mark.picture_files
@@ -167,7 +167,7 @@ def test_a_camera_stands_outside_of_all_bodies() -> None:
     for number in range(12):
         rng = np.random.default_rng([1, number])
         seen = random_scene(recipe, rng)
-        camera = random_camera(recipe, seen, rng)
+        camera = random_cameras(recipe, seen, rng)[""]
         sizes = 2 * seen.centres_m[:, 1]
         # A body is within the cube of its size, turned about the vertical.
         across = np.linalg.norm((seen.centres_m - camera.position)[:, [0, 2]], axis=1)

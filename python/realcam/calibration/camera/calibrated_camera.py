@@ -44,7 +44,7 @@ def calibrated_camera(
         camera = camera.replace(geometry=sampled_geometry(calibration, film, columns, gain))
         if geometry_error(calibration, camera).everywhere_px <= PRECISION_PX:
             break
-    return camera if scene_from_camera is None else _posed(camera, scene_from_camera)
+    return camera if scene_from_camera is None else posed(camera, scene_from_camera)
 
 
 def _film(calibration: Calibration, lens: Lens | str, width_mm: float | None) -> Film:
@@ -64,7 +64,7 @@ def _film(calibration: Calibration, lens: Lens | str, width_mm: float | None) ->
     return Film(width_mm, height_mm, (width, height), shift)
 
 
-def _posed(camera: Camera, scene_from_camera: ArrayLike) -> Camera:
+def posed(camera: Camera, scene_from_camera: ArrayLike) -> Camera:
     """Returns the camera with its centre of projection at a pose, (4, 4) in the axes of computer vision."""
     pose = rows_of(scene_from_camera, 4, "scene_from_camera")
     if pose.shape != (4, 4) or not np.allclose(pose[3], (0, 0, 0, 1)):
