@@ -38,7 +38,7 @@ CUTS = {
     ],
     "render/path/advance_path.hpp": [
         (r"    if constexpr \(effects\.have_wavelengths\(\)\) draw_wavelengths.*?\n", ""),
-        (r"    // Diffraction at the edges of the aperture.*?\n    \}\n", ""),
+        (r"    // Rays that the edges of the aperture diffract.*?\n    \}\n", ""),
     ],
     "render/film/film_control_variates.hpp": [
         (r"/// True if samples also count for.*?(?=\}  // namespace realcam\n)", ""),
@@ -59,7 +59,7 @@ CUTS = {
         (r"        if \(shares\) \{.*?\} else \{\n(.*?)        \}\n", r"\1"),
     ],
     "render/ghosts/splat_ghosts.hpp": [
-        (r"/// Diffracts light that geometrical optics brings to .*?(?=\}  // namespace splat_ghosts_detail)", ""),
+        (r"/// Deflects light that geometrical optics would bring to .*?(?=\}  // namespace splat_ghosts_detail)", ""),
         (r"template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths.*?\n\}\n", ""),
     ],
 }

@@ -235,7 +235,7 @@ void bind_settings(py::module_& m) {
         for (const ShotKey& key : settings_in_table()) {
             if (!key.get) continue;
             const std::string text =
-                "(self: realcam._core.RenderSettings) -> " + attribute_type(key) + "\n\n" + description(key);
+                "(self: RenderSettings) -> " + attribute_type(key) + "\n\n" + description(key);
             type.def_property_readonly(key.name, py::cpp_function(
                                                      [&key](const RenderSettings& self) {
                                                          return object_of(key, key.get(shot::request_of(self)));

@@ -301,7 +301,7 @@ Camera calibrated_camera(const shot::CalibrationRequest& request, const std::opt
                          std::optional<double> film_width_mm, std::optional<double> f_number) {
     const py::gil_scoped_acquire locked;
     try {
-        return py::module_::import("realcam.calibration.camera")
+        return py::module_::import("realcam.calibration.shot_camera")
             .attr("camera_of_shot")(request.file, request.camera, request.vignetting, lens, film_width_mm, f_number)
             .cast<Camera>();
     } catch (py::error_already_set& error) {

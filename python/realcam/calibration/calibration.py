@@ -222,9 +222,7 @@ class Calibration(StatedCamera):
         settings: further arguments of realcam.Camera, such as position and look_at, exposure_time_s, iso, model.
         Raises InputError, also if "auto" finds no lens within 10 degrees everywhere.
         """
-        return calibrated_camera(
-            self, lens, film_width_mm, f_number, focus_m, vignetting, scene_from_camera, settings
-        )
+        return calibrated_camera(self, lens, film_width_mm, f_number, focus_m, vignetting, scene_from_camera, settings)
 
     def geometry_error(self, camera: Camera) -> GeometryError:
         """Measures with traced rays how far a camera's geometry is from the calibration. Raises InputError."""

@@ -49,7 +49,7 @@ TEST_CASE("validate: a scene from arrays") {
     CHECK(says(message([](Scene& s) { s.materials[0].emission.b = -1; }), "material 0: emission"));
     CHECK(says(message([](Scene& s) { s.materials[0].diffuse_texture.texture = 0; }), "texture 0 does not exist"));
     CHECK(says(message([](Scene& s) { s.textures = {{"t", 2, 2, {1, 2, 3}, {}, TextureEncoding::srgb}}; }),
-               "texture 0: expected width x height"));
+               "must hold width x height x 4 numbers"));
     CHECK(says(message([](Scene& s) { s.points = {{{0, 0, 0}, {-1, 0, 0}}}; }), "point light 0"));
     CHECK(says(message([](Scene& s) { s.suns = {{{0, 0, 0}, {1, 1, 1}}}; }), "sun 0: its direction"));
     CHECK(says(message([](Scene& s) { s.environment.constant.g = nan; }), "environment"));

@@ -58,7 +58,7 @@ def test_a_film_that_is_none(size: tuple[float, float, tuple[int, int]], says: s
     [
         ("exposure_time_s", (0, math.inf, 1e300, 1e-300), "exposure time"),
         ("iso", (-100, math.nan, 1e300, 1e-300), "ISO"),
-        ("model", ("fisheye",), "pinhole, thin, mapped, thick or full"),
+        ("model", ("fisheye",), "expected full, full_double, polynomial, thick, mapped, thin or pinhole"),
         ("look_at", ((0, 0, 0), (0, 0, 1e-200)), "look at a point other"),
         ("up", ((0, 0, 2), (0, 0, 0), (0, math.inf, 0), (0, 1e-200, 0)), "up direction"),
         ("position", ((math.nan, 0, 0),), "finite"),

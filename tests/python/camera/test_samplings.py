@@ -64,7 +64,7 @@ def test_polynomials_show_the_light_of_the_lens(device: str) -> None:
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"pupil_sampling": "rear"}, "expected outline, rear_element, exit_pupil or pixel"),
+        ({"pupil_sampling": "rear"}, "must be outline, rear_element, exit_pupil or pixel"),
         ({"pupil_sampling": "pixel", "effects": "diffraction"}, "pixel excludes the effects"),
         ({"model": "thin", "pupil_sampling": "pixel"}, "pupil_sampling: the camera's model must be full"),
         ({"model": "polynomial", "effects": "dispersion"}, "dispersion: the camera's model must be full"),

@@ -320,7 +320,7 @@ def test_without_a_number_of_samples_the_noise_and_the_time_decide(tmp_path: Pat
     aim = "realcam: samples are taken until the noise is {}; --noise-codes, --seconds or --spp change this\n"
     for scene in ("quad.obj", "shot.toml"):
         image, told = figures(scene)
-        assert (image["noise"]["expected"], image["noise"]["unit"]) == (2, "codes")
+        assert (image["noise"]["wanted"], image["noise"]["unit"]) == (2, "codes")
         assert image["noise"]["is_reached"]
         assert aim.format("2 codes of 255, for 60 s at most") in told
     # A noise goal alone has no time limit; a time limit alone keeps the default noise goal.
@@ -338,7 +338,7 @@ def test_without_a_number_of_samples_the_noise_and_the_time_decide(tmp_path: Pat
 def test_noise_and_time_that_are_out_of_reach_end_with_one_line(tmp_path: Path) -> None:
     """The picture is written, and a warning says how far it got."""
     reached, _ = render(tmp_path, "--spp", "auto", "--noise", "0.2", "--environment", "100")
-    assert reached["noise"] == {"expected": 0.2, "unit": "share", "is_reached": True, "shortfall": ""}
+    assert reached["noise"] == {"wanted": 0.2, "unit": "share", "is_reached": True, "shortfall": ""}
     for words in (["--noise-codes", 1e-9, "--max-spp", 32], ["--noise-codes", 1e-9, "--seconds", 1e-9]):
         figures, told = render(tmp_path, "--spp", "auto", *words)
         assert figures["noise"]["is_reached"] is False

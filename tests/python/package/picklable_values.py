@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import realcam as rc
+from realcam import _core
 
 
 def floor_scene() -> rc.Scene:
@@ -44,7 +45,24 @@ def image() -> rc.Image:
 
 ORIGINS, DIRECTIONS = np.full((4, 3), (0.0, 0.0, 80.0)), np.array([[0, 0.01 * i, -1] for i in range(4)])
 
+
 # Each made twice is equal, and differs from its neighbour here.
+def calibrated_geometry(**more: Any) -> Any:
+    """Directions at the corners of two cells: those of a pinhole camera."""
+    x, y = np.meshgrid([-0.3, 0.0, 0.3], [0.2, -0.2])
+    directions = np.stack([x, y, -np.ones_like(x)], axis=-1)
+    directions /= np.linalg.norm(directions, axis=-1, keepdims=True)
+    return _core.CalibratedGeometry(
+        film=rc.Film(),
+        margin=0.1,
+        directions=directions,
+        max_angle_deg=20.0,
+        positions=np.full((3, 3, 2), 0.5, np.float32),
+        pinhole=(1.4, 2.1, 0.0, 0.5, 0.5),
+        **more,
+    )
+
+
 MAKERS: dict[str, list[Callable[[], Any]]] = {
     "Glass": [lambda: rc.Glass.named("N-BK7"), lambda: rc.Glass.constant(1.5), lambda: rc.Glass.table([(500, 1.5)])],
     "Surface": [
@@ -75,6 +93,10 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
     "RenderSettings": [
         lambda: rc.RenderSettings(spp="auto", effects="dispersion", illuminant="A", layers="all"),
         lambda: rc.RenderSettings(),
+    ],
+    "CalibratedGeometry": [
+        lambda: calibrated_geometry(),
+        lambda: calibrated_geometry(gain=np.ones((2, 3), np.float32), defined=np.ones((4, 4), bool)),
     ],
     "Film": [lambda: rc.Film(), lambda: rc.Film(resolution=(960, 641))],
     "CameraKey": [

@@ -153,7 +153,7 @@ def test_scene_files_that_cannot_be_read(tmp_path: Path) -> None:
         rc.Scene.load(tmp_path / "nowhere.obj")
     other = tmp_path / "scene.blend"
     other.write_text("")
-    with pytest.raises(rc.SceneFileError, match=r"\.glb, \.gltf, \.obj or \.ply"):
+    with pytest.raises(rc.SceneFileError, match=r"\.glb, \.gltf, \.obj, \.ply, "):
         rc.Scene.load(other)
     for text in (
         "",

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..._core import Camera, Film, InputError, Lens
 from ..arrays import rows_of
+from .calibrated_picture import CalibratedPicture
 from .geometry_error import geometry_error
 from .lens_choice import chosen_lens
 from .sampled_geometry import sampled_geometry
 from .vignetting import Vignetting, gain_of
-
-if TYPE_CHECKING:
-    from ..calibration import Calibration
 
 COLUMNS = (96, 192, 384, 768)  # cells of the grid of directions; the first that is precise
 PRECISION_PX = 0.004
@@ -23,7 +21,7 @@ DEFAULT_FILM_WIDTH_MM = 7.2  # of a sensor of the type 1/1.8 inch, as machine vi
 
 
 def calibrated_camera(
-    calibration: Calibration,
+    calibration: CalibratedPicture,
     lens: Lens | str,
     film_width_mm: float | None,
     f_number: float | None,
@@ -47,7 +45,7 @@ def calibrated_camera(
     return camera if scene_from_camera is None else posed(camera, scene_from_camera)
 
 
-def _film(calibration: Calibration, lens: Lens | str, width_mm: float | None) -> Film:
+def _film(calibration: CalibratedPicture, lens: Lens | str, width_mm: float | None) -> Film:
     """Returns the film whose axis is that of the calibration; pixels have the shape that K states."""
     width, height = calibration.size
     pixels, _ = calibration.project([[0.0, 0.0, 1.0]])
@@ -76,23 +74,3 @@ def posed(camera: Camera, scene_from_camera: ArrayLike) -> Camera:
     at_origin = camera.replace(position=(0, 0, 0), look_at=(0, 0, -1), up=(0, 1, 0))
     position = centre - axes @ np.array(at_origin.entrance_pupil_position_m)
     return camera.replace(position=tuple(position), look_at=tuple(position + forward), up=tuple(-down))
-
-
-def camera_of_shot(
-    file: str, camera: str, vignetting: str, lens: Lens | None, film_width_mm: float | None, f_number: float | None
-) -> Camera:
-    """Returns the camera of a shot with a calibration; the extension module calls this.
-
-    camera, vignetting: empty if not stated. lens: None: the bundled one that resembles the calibration most.
-    Raises RealcamError.
-    """
-    from ..calibration import Calibration  # which imports this module
-
-    calibration = Calibration.load(file, camera or None)
-    measured = Vignetting.load(vignetting) if vignetting else None
-    return calibration.camera(
-        "auto" if lens is None else lens,
-        film_width_mm=film_width_mm,
-        f_number=f_number if lens is None else None,
-        vignetting=measured,
-    )

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..._core import Camera, InputError, traced_chief_rays
 from ..arrays import Array
 from ..status import PointStatus
-
-if TYPE_CHECKING:
-    from ..calibration import Calibration
+from .calibrated_picture import CalibratedPicture
 
 DISTANCES_M = (0.5, 5.0, np.inf)
 _POINTS = 4000
@@ -35,7 +32,7 @@ class GeometryError:
     rotation_deg: float
 
 
-def geometry_error(calibration: Calibration, camera: Camera) -> GeometryError:
+def geometry_error(calibration: CalibratedPicture, camera: Camera) -> GeometryError:
     """Measures a calibrated camera at points drawn over its picture, 0.5 m, 5 m and infinitely far away.
 
     Raises InputError if the camera's picture has another size, or no chief ray.
@@ -69,7 +66,9 @@ def geometry_error(calibration: Calibration, camera: Camera) -> GeometryError:
     )
 
 
-def _errors(calibration: Calibration, pixels: Array, origins: Array, directions: Array, distance_m: float) -> Array:
+def _errors(
+    calibration: CalibratedPicture, pixels: Array, origins: Array, directions: Array, distance_m: float
+) -> Array:
     """Returns the errors (N,) of rays whose origins (N, 3) are relative to the centre of projection."""
     points = directions if np.isinf(distance_m) else origins + distance_m * directions
     projected, _ = calibration.project(points * (1, -1, -1))

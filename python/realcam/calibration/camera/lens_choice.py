@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..._core import Camera, Film, InputError, Lens, LensFileError, lens_names, traced_chief_rays
 from ..arrays import Array
 from ..status import PointStatus
-
-if TYPE_CHECKING:
-    from ..calibration import Calibration
+from .calibrated_picture import CalibratedPicture
 
 LARGEST_ROTATION_DEG = 10.0  # of a bundle; beyond it the lens's field does not resemble the calibration's
 _LEAST_LIGHT = 0.02  # of that in the middle of the film, at every pixel that the calibration sees
@@ -26,7 +23,7 @@ class _Candidate:
     lacks: str  # what makes it unsuitable; empty if nothing does
 
 
-def chosen_lens(calibration: Calibration, film: Film, f_number: float | None) -> Lens:
+def chosen_lens(calibration: CalibratedPicture, film: Film, f_number: float | None) -> Lens:
     """Returns the lens, in focus at infinity and stopped down to f_number if that is not None.
 
     Raises InputError that says what would fit if no bundled lens does.
@@ -48,7 +45,7 @@ def chosen_lens(calibration: Calibration, film: Film, f_number: float | None) ->
     raise InputError(_refusal(calibration, focal_length_mm, f_number, directions, candidates))
 
 
-def _sampled(calibration: Calibration) -> tuple[Array, Array]:
+def _sampled(calibration: CalibratedPicture) -> tuple[Array, Array]:
     """Returns pixels (N, 2) over the picture, to its corners, and their directions in the camera's axes."""
     width, height = calibration.size
     x, y = np.meshgrid(np.linspace(0, width, _POINTS), np.linspace(0, height, _POINTS))
@@ -92,7 +89,7 @@ def _lights(lens: Lens, film: Film, pixels: Array) -> bool:
 
 
 def _refusal(
-    calibration: Calibration,
+    calibration: CalibratedPicture,
     focal_length_mm: float,
     f_number: float | None,
     directions: Array,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import distance_transform_edt
@@ -11,9 +10,7 @@ from scipy.ndimage import distance_transform_edt
 from ..._core import CalibratedGeometry, Film, InputError
 from ..arrays import Array
 from ..status import PointStatus
-
-if TYPE_CHECKING:
-    from ..calibration import Calibration
+from .calibrated_picture import CalibratedPicture
 
 MARGIN = 0.1  # of the picture's size, on every side: defocused light beside the picture falls into it
 _INVERSE_SIDE = 257  # nodes along a side of the grid of positions
@@ -22,7 +19,7 @@ _EXTRAPOLATED_CELLS = 3  # beyond the border of the calibrated directions
 
 
 def sampled_geometry(
-    calibration: Calibration, film: Film, columns: int, gain: Callable[[Array], Array] | None = None
+    calibration: CalibratedPicture, film: Film, columns: int, gain: Callable[[Array], Array] | None = None
 ) -> CalibratedGeometry:
     """Samples a calibration for a film, at the nodes of a grid with this number of columns of cells.
 
@@ -49,14 +46,14 @@ def sampled_geometry(
     )
 
 
-def node_pixels(calibration: Calibration, columns: int, rows: int) -> Array:
+def node_pixels(calibration: CalibratedPicture, columns: int, rows: int) -> Array:
     """Returns the pixels (rows + 1, columns + 1, 2) of the nodes of a grid over the picture with its margin."""
     width, height = calibration.size
     x, y = np.linspace(-MARGIN, 1 + MARGIN, columns + 1), np.linspace(-MARGIN, 1 + MARGIN, rows + 1)
     return np.stack(np.meshgrid(x * width, y * height), axis=-1)
 
 
-def _rays(calibration: Calibration, pixels: Array) -> Array:
+def _rays(calibration: CalibratedPicture, pixels: Array) -> Array:
     """Returns the directions of pixels (..., 2) in the camera's axes (x right, y up, z backward); NaN for none."""
     directions, _ = calibration.ray(pixels.reshape(-1, 2))
     return (directions * (1, -1, -1)).reshape(*pixels.shape[:-1], 3)
@@ -92,7 +89,7 @@ def _shifted(values: np.ndarray, step: int, axis: int) -> np.ndarray:
     return result
 
 
-def _mask(calibration: Calibration) -> np.ndarray | None:
+def _mask(calibration: CalibratedPicture) -> np.ndarray | None:
     """Returns (rows, columns) booleans, True in the cells of the picture that have a ray; None if all have one."""
     width, height = calibration.size
     scale = min(1.0, _MAX_MASK_SIDE / max(width, height))
@@ -103,7 +100,7 @@ def _mask(calibration: Calibration) -> np.ndarray | None:
     return None if defined.all() else defined
 
 
-def _positions(calibration: Calibration, max_angle: float) -> Array:
+def _positions(calibration: CalibratedPicture, max_angle: float) -> Array:
     """Returns the picture coordinates of directions, see CalibratedGeometry; beyond its margin those of its border."""
     x, y = np.meshgrid(*2 * [np.linspace(-1, 1, _INVERSE_SIDE)])
     radius = np.hypot(x, y)

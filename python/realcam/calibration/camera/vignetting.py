@@ -7,7 +7,6 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -18,9 +17,7 @@ from ..errors import CalibrationFileError
 from ..files.document import Document
 from ..files.entries import Entries, element_entries
 from ..status import PointStatus
-
-if TYPE_CHECKING:
-    from ..calibration import Calibration
+from .calibrated_picture import CalibratedPicture
 
 LARGEST_GAIN = 4.0  # over the lens's own light; beyond it the lens passes too little for its pupil to be trusted
 _DEGREE = 6  # of the polynomial through a flat field, in each direction: smooth, and far above the noise of a picture
@@ -64,7 +61,7 @@ class Vignetting:
         return Vignetting(_polynomial(_flat_field(Path(path), linear), path), f_number, focus_m, Path(path).name)
 
 
-def gain_of(vignetting: Vignetting, calibration: Calibration, camera: Camera) -> Callable[[Array], Array]:
+def gain_of(vignetting: Vignetting, calibration: CalibratedPicture, camera: Camera) -> Callable[[Array], Array]:
     """Returns a function of pixels (..., 2): the measured transmission over the light of a camera's own lens, both
     relative to the lens's axis. Beyond the picture it is that at its edge.
 
@@ -93,7 +90,7 @@ def gain_of(vignetting: Vignetting, calibration: Calibration, camera: Camera) ->
     return gain
 
 
-def _refuse(calibration: Calibration, camera: Camera, pixels: Array, gain: Array) -> None:
+def _refuse(calibration: CalibratedPicture, camera: Camera, pixels: Array, gain: Array) -> None:
     row, column = np.unravel_index(int(gain.argmax()), gain.shape)
     pixel = pixels[row, column]
     directions, _ = calibration.ray(pixel[None])
@@ -169,7 +166,7 @@ def _lensfun(
     focus_m: float | None,
     crop_factor: float | None,
 ) -> Vignetting:
-    """Returns 1 + k1 r^2 + k2 r^4 + k3 r^6, with r = 1 in the centre of the corner pixel (lensfun 0.3, mod-color.cpp)."""
+    """Returns 1 + k1 r^2 + k2 r^4 + k3 r^6, r = 1 in the centre of the corner pixel (lensfun 0.3, mod-color.cpp)."""
     found = []
     for element in document.xml.iter("lens"):
         entries = element_entries(document, element)

@@ -171,8 +171,9 @@ TEST_CASE("what can be put up with is a warning") {
 
 TEST_CASE("bad files: one line that names the file and what is expected") {
     const Folder folder;
-    CHECK(has(error_of(folder.path("a.stl")), "ends in .glb, .gltf, .obj or .ply, not in .stl"));
-    CHECK(has(error_of(folder.path("a")), "ends in .glb, .gltf, .obj or .ply"));
+    CHECK(has(error_of(folder.path("a.stl")),
+              "ends in .glb, .gltf, .obj, .ply, .usd, .usda, .usdc or .usdz, not in .stl"));
+    CHECK(has(error_of(folder.path("a")), "ends in .glb, .gltf, .obj, .ply, .usd, .usda, .usdc or .usdz"));
     CHECK(has(error_of(folder.path("none.obj")), "no such file"));
     CHECK(has(error_of(folder.write("empty.ply", "")), "is empty"));
     fs::create_directory(folder.path("folder.obj"));
