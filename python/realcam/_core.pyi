@@ -820,7 +820,7 @@ class Lens:
         film_mm: (width, height), and resolution: (columns, rows); None: see Film.for_lens. focus_m: distance of the plane
         in focus from the film, and f_number: as for Lens.with_rings; None: as the lens is set. model: see
         rc.fit_camera_model; None: "opencv5" if it fits to 0.05 pixels RMS, and otherwise the better one of it and
-        "fisheye". distance_m, through: see rc.fit_camera_model.
+        "fisheye". distance_m, through: see fit_camera_model.
         The result can be saved in all formats of docs/calibration.md. Its rms_px and max_px say how well the model fits.
         Raises InputError.
         """
@@ -2187,6 +2187,39 @@ class Film:
         Width.
         """
 
+@final
+class CalibratedGeometry:
+    """
+    Directions that the points of a camera's picture see from its centre of projection: those of a calibration, sampled. Immutable; made by Calibration.camera.
+    """
+
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, memo: object) -> Self: ...
+    def __init__(
+        self,
+        *,
+        film: Film,
+        margin: float,
+        directions: ArrayLike,
+        gain: ArrayLike | None = None,
+        defined: ArrayLike | None = None,
+        max_angle_deg: float,
+        positions: ArrayLike,
+        pinhole: tuple[float, float, float, float, float],
+    ) -> None:
+        """
+        film: the Film, of which only size and shift count.
+        directions: (rows + 1, columns + 1, 3), unit vectors in the axes of the camera, x right, y up, z backward, at nodes in
+          uniform steps over the picture and, on every side, `margin` times its size; from the upper left corner.
+        gain: (rows + 1, columns + 1), factors of the irradiance. None: 1.
+        defined: (mask rows, mask columns), False where the calibration has no ray. None: True.
+        positions: (side, side, 2), picture coordinates, from (0, 0) at the upper left corner to (1, 1), of the direction at an
+          angle a to the forward axis and the azimuth p from x to y, at a / max_angle_deg * (cos p, sin p) in [-1, 1]^2.
+        pinhole: (focal_x, focal_y, skew, centre_x, centre_y) of the pinhole camera near the axis, for a picture of size 1 x 1.
+        Raises InputError.
+        """
+
 class FieldOfView(NamedTuple):
     horizontal: float
     vertical: float
@@ -2215,6 +2248,7 @@ class Camera:
         shutter_opens_s: float = 0.0,
         readout_time_s: float = 0.0,
         motion: Sequence[tuple[float, _Triple, _Triple] | tuple[float, _Triple, _Triple, _Triple]] = [],
+        geometry: CalibratedGeometry = None,
     ) -> None:
         """
         lens: the Lens. film: a Film; None: that of the lens.
@@ -2226,6 +2260,7 @@ class Camera:
           row of pixels to the bottom row.
         motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in increasing order of time, instead of
           position, look_at and up, which then become those at time 0. Between keys the camera moves uniformly.
+        geometry: the CalibratedGeometry of a calibration (Calibration.camera) for this film; None: that of the lens.
         Raises InputError.
         """
     def framing(
@@ -2366,6 +2401,7 @@ class Camera:
         shutter_opens_s: float | None = None,
         readout_time_s: float | None = None,
         motion: Sequence[tuple[float, _Triple, _Triple] | tuple[float, _Triple, _Triple, _Triple]] | None = None,
+        geometry: CalibratedGeometry = None,
     ) -> Camera:
         """
         Returns the camera with some properties changed. Arguments as for Camera(); None: unchanged. The film
@@ -2406,6 +2442,11 @@ class Camera:
     def film_centre_m(self) -> tuple[float, float, float]:
         """
         (x, y, z), scene: centre of the film; differs from position by Film(shift_mm=...).
+        """
+    @property
+    def geometry(self) -> CalibratedGeometry:
+        """
+        The CalibratedGeometry of a calibrated camera, which is immutable; None: the geometry is that of the lens.
         """
     @property
     def iso(self) -> float:
@@ -2546,6 +2587,13 @@ class ProjectionStatus(IntEnum):
     BLOCKED = 2
     BEHIND = 3
     BAD_INPUT = 4
+
+def traced_chief_rays(camera: Camera, pixels: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """
+    Returns (origins_m, directions), (N, 3) float64, scene, of the chief rays of pixels (N, 2) in front of the
+    camera: each is traced through the lens, or is that of the camera model, and moved as rendering moves it. Origins lie on
+    the ray near the centre of projection. NaN for pixels without a chief ray. For a camera that does not move.
+    """
 
 @final
 class Material:
@@ -4262,7 +4310,7 @@ def _read_picture(path: bytes) -> tuple[NDArray[np.float32], list[str]]:
     Internal: use realcam.image_file.read_picture. Returns the pixels (H, W, 3) and a list of warnings.
     """
 
-def _write_picture(path: bytes, image: object, film_tone: bool) -> None:
+def _write_picture(path: bytes, image: Image, film_tone: bool) -> None:
     """
     Internal: use Image.save. film_tone: True for the tone curve "film", False for "linear".
     """

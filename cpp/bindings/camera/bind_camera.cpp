@@ -75,7 +75,7 @@ keys_of(const Camera& camera) {
 Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Triple& position, const Triple& look_at,
                    const Triple& up, double exposure_time_s, double iso, const std::string& model,
                    double shutter_opens_s, double readout_time_s, const std::vector<Key>& motion,
-                   const std::shared_ptr<CalibratedGeometry>& geometry) {
+                   const std::optional<std::shared_ptr<CalibratedGeometry>>& geometry) {
     Camera camera;
     camera.lens = lens;
     camera.film = film ? *film : default_film(lens, std::nullopt, std::nullopt);
@@ -84,7 +84,7 @@ Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Tripl
     camera.exposure_time_s = exposure_time_s;
     camera.iso = iso;
     camera.shutter = {shutter_opens_s, readout_time_s};
-    camera.geometry = geometry;
+    if (geometry) camera.geometry = *geometry;
     validate(camera);
     if (!motion.empty()) set_motion(camera, motion_from(motion));
     return camera;
@@ -95,7 +95,7 @@ Camera changed_camera(Camera camera, const std::optional<LensSystem>& lens, cons
                       const std::optional<Triple>& up, std::optional<double> exposure_time_s, std::optional<double> iso,
                       const std::optional<std::string>& model, std::optional<double> shutter_opens_s,
                       std::optional<double> readout_time_s, const std::optional<std::vector<Key>>& motion,
-                      const std::shared_ptr<CalibratedGeometry>& geometry) {
+                      const std::optional<std::shared_ptr<CalibratedGeometry>>& geometry) {
     if (position || look_at || up) camera.motion.clear();
     if (lens) camera.lens = *lens;
     if (film) camera.film = *film;
@@ -107,7 +107,7 @@ Camera changed_camera(Camera camera, const std::optional<LensSystem>& lens, cons
     if (model) camera.model = model_from(*model);
     camera.shutter.opens_s = shutter_opens_s.value_or(camera.shutter.opens_s);
     camera.shutter.readout_time_s = readout_time_s.value_or(camera.shutter.readout_time_s);
-    if (geometry) camera.geometry = geometry;
+    if (geometry) camera.geometry = *geometry;
     if (motion && motion->empty()) camera.motion.clear();
     validate(camera);
     if (motion && !motion->empty()) set_motion(camera, motion_from(*motion));

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Camera, Film, InputError, Lens, Material, Scene
-from ..calibration.camera.calibrated_camera import posed
+from ..calibration.camera.making import posed
 from ..vision.rig import Rig, RigCamera, pose_of
 from .calibrated import calibrated_camera, poses_from_first
 from .recipe import MOVES_FOR_S, Recipe

@@ -216,10 +216,11 @@ class _Network:
             node = UsdShade.Shader(source[0].GetPrim())
             kind = str(node.GetIdAttr().Get() or "") if node else ""
             if kind == "UsdTransform2d" and transform is None:
+                scale, offset = self._value(node, "scale", (1, 1)), self._value(node, "translation", (0, 0))
                 transform = (
-                    tuple(map(float, self._value(node, "scale", (1, 1)))),
+                    (float(scale[0]), float(scale[1])),
                     float(self._value(node, "rotation", 0.0)),
-                    tuple(map(float, self._value(node, "translation", (0, 0)))),
+                    (float(offset[0]), float(offset[1])),
                 )
                 port = node.GetInput("in")
             elif kind.startswith("UsdPrimvarReader_"):

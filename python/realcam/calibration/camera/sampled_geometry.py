@@ -77,7 +77,8 @@ def _continued(directions: Array, is_defined: np.ndarray) -> Array:
     if not known.all():
         nearest = distance_transform_edt(~known, return_distances=False, return_indices=True)
         continued = continued[tuple(nearest)]
-    return continued / np.linalg.norm(continued, axis=-1, keepdims=True)
+    unit: Array = continued / np.linalg.norm(continued, axis=-1, keepdims=True)
+    return unit
 
 
 def _shifted(values: np.ndarray, step: int, axis: int) -> np.ndarray:

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from ..._core import Camera, Film, InputError, Lens
 from ..arrays import rows_of
 from .calibrated_picture import CalibratedPicture
-from .geometry_error import geometry_error
 from .lens_choice import chosen_lens
+from .measuring import geometry_error
 from .sampled_geometry import sampled_geometry
 from .vignetting import Vignetting, gain_of
 
