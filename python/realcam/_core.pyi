@@ -2248,7 +2248,7 @@ class Camera:
         shutter_opens_s: float = 0.0,
         readout_time_s: float = 0.0,
         motion: Sequence[tuple[float, _Triple, _Triple] | tuple[float, _Triple, _Triple, _Triple]] = [],
-        geometry: CalibratedGeometry = None,
+        geometry: CalibratedGeometry | None = None,
     ) -> None:
         """
         lens: the Lens. film: a Film; None: that of the lens.
@@ -2401,7 +2401,7 @@ class Camera:
         shutter_opens_s: float | None = None,
         readout_time_s: float | None = None,
         motion: Sequence[tuple[float, _Triple, _Triple] | tuple[float, _Triple, _Triple, _Triple]] | None = None,
-        geometry: CalibratedGeometry = None,
+        geometry: CalibratedGeometry | None = None,
     ) -> Camera:
         """
         Returns the camera with some properties changed. Arguments as for Camera(); None: unchanged. The film
