@@ -217,8 +217,7 @@ private:
         request.settings = std::move(plan.settings);
         if (!plan.warning.empty()) warn(plan.warning);
         if (options_.explains && !options_.as_json && !options_.is_quiet)
-            for (const Plan& part : plan.plans)
-                std::fputs((text_of(part, name_of(part.model)) + '\n').c_str(), stdout);
+            for (const Plan& part : plan.plans) std::fputs((text_of(part, name_of(part.model)) + '\n').c_str(), stdout);
         return plan.summary;
     }
 

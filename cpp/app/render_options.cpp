@@ -34,9 +34,10 @@ void add_shot_option(CLI::App& command, RenderOptions& options, const shot::Shot
 
 void add_shot_options(CLI::App& command, RenderOptions& options) {
     command
-        .add_option("SCENE", options.scene,
-                    "The scene: .obj (with .mtl), .gltf, .glb, .ply or .usd; or a shot file: .toml, whose values apply to "
-                    "all options that are not given")
+        .add_option(
+            "SCENE", options.scene,
+            "The scene: .obj (with .mtl), .gltf, .glb, .ply or .usd; or a shot file: .toml, whose values apply to "
+            "all options that are not given")
         ->type_name("SCENE")
         ->check(not_empty())
         ->required();

@@ -228,7 +228,8 @@ std::shared_ptr<CalibratedGeometry> make_geometry(const Film& film, double margi
 void bind_geometry(py::module_& m) {
     py::class_<CalibratedGeometry, std::shared_ptr<CalibratedGeometry>> geometry(
         m, "CalibratedGeometry",
-        "Directions that the points of a camera's picture see from its centre of projection: those of a calibration, "
+        "Directions of the points of a picture, as its camera's centre of projection finds them: those of a "
+        "calibration, "
         "sampled. Immutable; made by Calibration.camera.");
     def_value(geometry);
     geometry

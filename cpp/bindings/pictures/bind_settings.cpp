@@ -234,8 +234,7 @@ void bind_settings(py::module_& m) {
                 "Raises InputError.");
         for (const ShotKey& key : settings_in_table()) {
             if (!key.get) continue;
-            const std::string text =
-                "(self: RenderSettings) -> " + attribute_type(key) + "\n\n" + description(key);
+            const std::string text = "(self: RenderSettings) -> " + attribute_type(key) + "\n\n" + description(key);
             type.def_property_readonly(key.name, py::cpp_function(
                                                      [&key](const RenderSettings& self) {
                                                          return object_of(key, key.get(shot::request_of(self)));
