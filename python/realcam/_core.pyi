@@ -2190,7 +2190,7 @@ class Film:
 @final
 class CalibratedGeometry:
     """
-    Directions that the points of a camera's picture see from its centre of projection: those of a calibration, sampled. Immutable; made by Calibration.camera.
+    Directions of the points of a picture, as its camera's centre of projection finds them: those of a calibration, sampled. Immutable; made by Calibration.camera.
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
