@@ -28,6 +28,14 @@ inline void add_light(const InverseAffine<double>& camera_from_scene, Vec3d towa
     facts.lights.push_back({from, lux, is_sun ? kInfinity : length(towards), solid_angle_sr});
 }
 
+/// Gives a pinhole camera a square film about the axis. Neither the directions of a calibration nor the curvature of
+/// the lens's own film apply to it.
+inline void set_square_film(Camera& camera, int side, double width_mm) {
+    camera.film = {width_mm, width_mm, side, side};
+    camera.geometry = nullptr;
+    camera.lens.film_radius_of_curvature = kInfinity;
+}
+
 /// True if something occludes a light, by a picture of one pixel. `camera`: a pinhole camera, which is pointed at the
 /// light; `settings`: with the layer depth_middle.
 inline bool is_hidden(Session& session, const Assembly& scene, Camera camera, RenderSettings settings,
@@ -40,9 +48,7 @@ inline bool is_hidden(Session& session, const Assembly& scene, Camera camera, Re
     camera.pose.look_at_m = camera.pose.position_m + direction;
     camera.pose.up = std::fabs(direction.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
     camera.motion.clear();
-    camera.film.width = camera.film.height = 1;
-    camera.film.width_mm = camera.film.height_mm = 1e-3;
-    camera.film.shift_mm = {0, 0};
+    set_square_film(camera, 1, 1e-3);
     settings.spp = 1;
     const Image image = take_picture(session, scene, camera, settings, {});
     // Excludes the light's own surface, which extends towards the lens by its radius at most: distance times the square
@@ -75,9 +81,7 @@ inline WideView wide_view(Session& session, const Assembly& scene, Camera camera
                           const Progress& progress) {
     WideView view{.side = 16, .half_slope = 2, .values = {}};  // 63 degrees to each side
     const double f = std::fabs(first_order(camera.lens, camera.lens.wavelength_nm).effective_focal_length);
-    camera.film.width = camera.film.height = view.side;
-    camera.film.width_mm = camera.film.height_mm = 2 * view.half_slope * f;
-    camera.film.shift_mm = {0, 0};
+    set_square_film(camera, view.side, 2 * view.half_slope * f);
     settings.layers = {};
     const Image image = take_picture(session, scene, camera, settings, progress);
     for (std::size_t i = 0; i < image.depth.size(); ++i) {

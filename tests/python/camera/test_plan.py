@@ -317,7 +317,19 @@ def test_an_unknown_quality_is_said(shot_file: Path, command: Command) -> None:
     assert printed.stderr == 'realcam: error: --quality must be draft, photo or reference; it is "best"\n'
 
 
-def test_a_film_before_a_single_mirror_can_be_planned() -> None:
-    lens = rc.Lens.load("off-axis-500mm")
+@pytest.mark.parametrize(
+    "name",
+    [
+        "off-axis-500mm",
+        pytest.param(
+            "schmidt-225mm",
+            marks=pytest.mark.xfail(
+                strict=True, reason="the first-order data of ghosts need a film behind the mirrors"
+            ),
+        ),
+    ],
+)
+def test_a_film_before_a_single_mirror_can_be_planned(name: str) -> None:
+    lens = rc.Lens.load(name)
     plan = rc.plan(board(30.0), rc.Camera(lens, film=rc.Film(*lens.film_mm, (24, 16))), device="cpu")
     assert plan.model == "full"  # a thin lens does not mirror the picture
