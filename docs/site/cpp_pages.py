@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SOURCES = ROOT / "cpp"
 # What is for compilers alone.
 _MACRO = re.compile(r"\b(?!REALCAM_NAMESPACE)REALCAM_\w+\s+|(?<=\s)\[\[.*?\]\]\s|\[\[.*?\]\]")
+_LAMBDA = re.compile(r"\[[&=\w\s,]*\]\s*\([^()]*\)\s*\{")
 _TYPE = re.compile(r"^(?:template\s*<.*>\s*)?(?:typedef\s+)?(struct|class|union|enum(?:\s+class)?)\s+(\w+)", re.DOTALL)
 _OPERATOR = re.compile(r"operator\s*[^\w\s(]+")
 # Where the list of a constructor's members begins.
@@ -82,7 +83,9 @@ def _declaration(rest: str) -> str:
         return ""
     head = _MACRO.sub("", rest[:end]).strip()
     if rest[end] == ";":
-        return f"{head};"
+        name, equals, value = head.partition("=")
+        # The body of a lambda is left out like that of a function, and with it the value that it computes.
+        return f"{name}= ...;" if equals and _LAMBDA.search(value) else f"{head};"
     if _TYPE.match(head):
         return f"{head} {_MACRO.sub('', _members(rest[end : _end_of_block(rest, end)]))};"
     if "=" in head.rpartition(")")[2] and "(" not in head.partition("=")[0]:  # a constant

@@ -174,7 +174,7 @@ Raises InputError.)")
         .def("__repr__", [](const Film& f) { return text_of(f); });
 }
 
-/// Elements of an array, of which each T has `parts` numbers.
+/// Returns the elements of an array as values of type T. Each is made of `parts` consecutive numbers.
 template <class T, int parts, class Number>
 std::vector<T> elements(const InputArray<Number>& array) {
     const auto count = static_cast<std::size_t>(array.size()) / parts;
@@ -229,8 +229,7 @@ void bind_geometry(py::module_& m) {
     py::class_<CalibratedGeometry, std::shared_ptr<CalibratedGeometry>> geometry(
         m, "CalibratedGeometry",
         "Directions of the points of a picture, as its camera's centre of projection finds them: those of a "
-        "calibration, "
-        "sampled. Immutable; made by Calibration.camera.");
+        "calibration, sampled. Immutable; made by Calibration.camera.");
     def_value(geometry);
     geometry
         .def(py::init(&make_geometry), py::kw_only(), "film"_a, "margin"_a, "directions"_a, "gain"_a = py::none(),

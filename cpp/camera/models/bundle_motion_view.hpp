@@ -46,7 +46,7 @@ namespace bundle_motion_detail {
 
 /// Position in a grid: a cell, and fractions of its width and height.
 struct GridCell {
-    int index;  ///< of the cell's first node
+    int index;  ///< index of the cell's first node
     float x, y;
 };
 
@@ -103,8 +103,8 @@ REALCAM_INLINE bool is_defined(const BundleMotionsView& view, Vec2f film) {
 }
 
 /// Rotates a vector about an axis. `rotation`: the axis times the sine of an angle below 90 degrees (Rodrigues).
-template <class T>
-REALCAM_INLINE Vec3<T> rotated(Vec3f rotation, Vec3<T> v) {
+template <class R, class T>
+REALCAM_INLINE Vec3<T> rotated(Vec3<R> rotation, Vec3<T> v) {
     const auto axis = static_cast<Vec3<T>>(rotation);
     const Vec3<T> across = cross(axis, v);
     const T cosine = sqrt_or_zero(1 - dot(axis, axis));

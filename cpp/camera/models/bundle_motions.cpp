@@ -19,12 +19,6 @@ struct Node {
     Vec3d direction;
 };
 
-/// Rotates v by the smallest rotation from one unit vector to another.
-Vec3d rotated_from(Vec3d from, Vec3d to, Vec3d v) {
-    const Vec3d rotation = cross(from, to), across = cross(rotation, v);
-    return v + across + (1 / (1 + dot(from, to))) * cross(rotation, across);
-}
-
 /// Matrix that takes a small displacement on the film, behind the lens whose bundle moves as that of node `at`, to the
 /// displacement in the calibrated picture that sees the same change of direction. `along_x`, `along_y`: nodes on both
 /// sides of it.
@@ -38,7 +32,7 @@ Matrix2 landing_matrix(const Node& at, const Node (&along_x)[2], const Node (&al
     };
     const Matrix2 calibrated = differences([](const Node& node) { return node.direction; });
     const Matrix2 behind_lens =
-        differences([&](const Node& node) { return rotated_from(at.lens.direction, d, node.lens.direction); });
+        differences([&](const Node& node) { return rotated(cross(at.lens.direction, d), node.lens.direction); });
     const Matrix2 identity = {{1, 0}, {0, 1}};
     // At a fold, where the calibration is extrapolated, there is no inverse.
     if (!(calibrated.determinant() * behind_lens.determinant() > 0)) return identity;

@@ -138,6 +138,11 @@ REALCAM_INLINE CameraFrame moved_frame(const BundleMotionsView& view, const Bund
             axis({0, 1, 0}), axis({0, 0, 1})};
 }
 
+/// Centre of projection of a calibrated camera in render space.
+REALCAM_INLINE Vec3f centre_of_projection(const CameraView& camera, const CameraFrame& frame) {
+    return frame.position + from_camera_axes(frame, camera.bundles.centre);
+}
+
 /// Frame of a camera's lens as light from one point of the scene finds it, and the film point of the chief ray of that
 /// point, mm. Without a calibration: the camera's frame for all points; the film point is unused.
 struct LensPlacement : CameraFrame {
@@ -154,7 +159,7 @@ REALCAM_INLINE LensPlacement placement_towards(const CameraView& camera, const C
 
 /// placement_towards for light from a point of render space.
 REALCAM_INLINE LensPlacement placement_for(const CameraView& camera, const CameraFrame& frame, Vec3f point) {
-    return placement_towards(camera, frame, point - (frame.position + from_camera_axes(frame, camera.bundles.centre)));
+    return placement_towards(camera, frame, point - centre_of_projection(camera, frame));
 }
 
 /// Depth of a point of render space: its distance from the film along the camera's axis, metres.

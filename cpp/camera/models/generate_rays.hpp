@@ -144,8 +144,17 @@ REALCAM_INLINE void set_camera_ray(const CameraView& camera, CameraRays<N>& rays
     rays.weight[lane] = select(has_light, ray.weight, 0.0f);
 }
 
-/// Moves the rays of a calibrated camera with the bundles of their film points, and weights them by the gain there;
-/// those of film points without a calibrated ray are blocked. Rays of other cameras stay.
+/// Moves a lane's ray by the motion of a bundle of a calibrated camera.
+template <int N>
+REALCAM_INLINE void move_ray(const CameraView& camera, const BundleMotion& motion, int lane, CameraRays<N>& rays) {
+    const Vec3f origin = to_camera_axes(camera, rays.origin[lane] - camera.position),
+                direction = to_camera_axes(camera, rays.direction[lane]);
+    rays.origin.set(lane, camera.position + from_camera_axes(camera, moved_point(camera.bundles, motion, origin)));
+    rays.direction.set(lane, from_camera_axes(camera, rotated(motion.rotation, direction)));
+}
+
+/// Moves the rays of a calibrated camera with the bundles of their film points, and weights them by the gain there.
+/// Rays of film points where the calibration has none are blocked. The rays of all other cameras stay as they are.
 template <int N, class Points>
 REALCAM_HD inline void move_bundles(const CameraView& camera, const Points& film, CameraRays<N>& rays) {
     const BundleMotionsView& bundles = camera.bundles;
@@ -154,11 +163,8 @@ REALCAM_HD inline void move_bundles(const CameraView& camera, const Points& film
     for (int i = 0; i < N; ++i) {
         const Vec2f at = film[i];
         const BundleMotion motion = bundle_motion(bundles, at);
-        const Vec3f origin = to_camera_axes(camera, rays.origin[i] - camera.position),
-                    direction = to_camera_axes(camera, rays.direction[i]);
         const bool defined = is_defined(bundles, at);
-        rays.origin.set(i, camera.position + from_camera_axes(camera, moved_point(bundles, motion, origin)));
-        rays.direction.set(i, from_camera_axes(camera, rotated(motion.rotation, direction)));
+        move_ray(camera, motion, i, rays);
         rays.weight[i] = select(defined, motion.gain * rays.weight[i], 0.0f);
         rays.passed[i] = select(defined, rays.passed[i], 0);
     }

@@ -126,8 +126,10 @@ REALCAM_HD inline void pixel_centre_rays(const CameraView& camera, const SampleB
                                          float (&times)[N]) {
     using namespace pixel_centre_rays_detail;
     rays_at_start(camera, block, rays);
-    move_bundles(camera, PixelCentres<N>{camera, block}, rays);
-    for (int i = 0; i < N; ++i) rays.weight[i] = rays.weight[i] > 0.0f ? 1.0f : 0.0f;
+    if (camera.bundles.nodes) {
+        move_bundles(camera, PixelCentres<N>{camera, block}, rays);
+        for (int i = 0; i < N; ++i) rays.weight[i] = rays.weight[i] > 0.0f ? 1.0f : 0.0f;
+    }
     set_times(camera, block, times, [](int) { return 0.5f; });
     move_rays(camera, times, rays);
 }

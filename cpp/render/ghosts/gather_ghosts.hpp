@@ -109,16 +109,14 @@ REALCAM_INLINE void move_ghosts(const CameraView& camera, CameraRays<N>& rays) {
     if (!bundles.nodes) return;
     constexpr int kIterations = 4;  // each reduces the error by the change of the rotation over one radian of the field
     for (int i = 0; i < N; ++i) {
-        const Vec3f direction = to_camera_axes(camera, rays.direction[i]),
-                    origin = to_camera_axes(camera, rays.origin[i] - camera.position);
+        const Vec3f direction = to_camera_axes(camera, rays.direction[i]);
         BundleMotion motion{};
         Vec3f seen = direction;
         for (int k = 0; k < kIterations; ++k) {
             motion = bundle_motion(bundles, film_point_seeing(bundles, seen));
             seen = rotated(motion.rotation, direction);
         }
-        rays.origin.set(i, camera.position + from_camera_axes(camera, moved_point(bundles, motion, origin)));
-        rays.direction.set(i, from_camera_axes(camera, seen));
+        move_ray(camera, motion, i, rays);
     }
 }
 

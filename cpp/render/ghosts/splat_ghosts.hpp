@@ -27,8 +27,7 @@ REALCAM_INLINE Vec3f point_in_scene(const CameraFrame& lens, float front_vertex_
 REALCAM_INLINE Vec3f towards_light(const CameraView& camera, const CameraFrame& frame, Vec3f receiver,
                                    const LightSample& light) {
     if (!(light.distance < kFarAway)) return light.direction;
-    return receiver + light.distance * light.direction -
-           (frame.position + from_camera_axes(frame, camera.bundles.centre));
+    return receiver + light.distance * light.direction - centre_of_projection(camera, frame);
 }
 
 /// Returns the index of the pixel at a film point, mm; -1 if the point lies outside the film.

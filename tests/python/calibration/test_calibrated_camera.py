@@ -67,7 +67,7 @@ def test_a_lens_without_rotational_symmetry() -> None:
 
 @pytest.mark.parametrize("distance_m", [0.6, 5.0])
 def test_pixels_see_the_points_that_the_calibration_projects_there(distance_m: float, device: str) -> None:
-    """What the layers say that pixels see, and Camera.project and Camera.ray."""
+    """The layer of positions, Camera.project and Camera.ray agree with the calibration."""
     made_from = calibration()
     camera = made_from.camera(LENS.stopped_down(16), position=(0.2, 0.1, 0.5), look_at=(0.3, 0.1, -5))
     rotation, translation = camera.world_to_camera
@@ -121,10 +121,21 @@ def test_lamps_have_the_same_image_by_light_tracing(focal: float, effects: tuple
         ]
         return np.array([*mean, *width])
 
-    # The disc has some 100 pixels, each with 256 samples of which one in twenty hits the lamp: 3% of noise each, 0.3%
-    # of the sum. The displacement within the disc is linear; the quadratic part is below a tenth of a pixel.
+    # The disc has about 100 pixels. One in twenty of the 256 samples of each hits the lamp, so its noise is 3%, and
+    # that of the sum is 0.3%. The displacement within the disc is linear; the quadratic part is below a tenth of a
+    # pixel.
     np.testing.assert_allclose(alone.sum(), off.sum(), rtol=0.02)
     np.testing.assert_allclose(moments(alone), moments(off), atol=0.1)
+
+
+def test_effects_are_planned(device: str) -> None:
+    """The planner probes the scene with films of its own."""
+    lamp = scenes.quad((0.3, 0.2, -2), 0.05, emission=1000.0)
+    scene = scenes.scene_of(scenes.quad((0, 0, -3), 5, diffuse=0.5), lamp).with_environment(1.0)
+    picture = rc.render(scene, calibration().camera(LENS), spp=4, device=device)
+    assert picture.plan
+    # Coloured light may lie outside the primaries, so that single values are negative.
+    assert picture.pixels.sum(axis=2).min() > 0
 
 
 def test_measured_vignetting_replaces_that_of_the_lens() -> None:

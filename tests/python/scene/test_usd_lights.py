@@ -13,7 +13,7 @@ from .. import scenes
 
 pytest.importorskip("pxr")
 
-# Polygons stand for circles: 64 segments leave 0.04% of the light. The rest is noise of the samples.
+# Circles are polygons of 64 segments, which emit 0.04% less light. The rest of the tolerance is for noise.
 TOLERANCE = 1e-3
 
 FLOOR = """def Mesh "Floor" {

@@ -1,4 +1,4 @@
-"""What a camera needs of a calibration."""
+"""The part of a calibration that a camera uses."""
 
 from __future__ import annotations
 

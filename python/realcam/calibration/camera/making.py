@@ -12,7 +12,7 @@ from ..arrays import rows_of
 from .calibrated_picture import CalibratedPicture
 from .lens_choice import chosen_lens
 from .measuring import geometry_error
-from .sampled_geometry import sampled_geometry
+from .sampled_geometry import defined_mask, sampled_geometry
 from .vignetting import Vignetting, gain_of
 
 COLUMNS = (96, 192, 384, 768)  # cells of the grid of directions; the first that is precise
@@ -38,8 +38,9 @@ def calibrated_camera(
     chosen = chosen.with_rings(f_number=None if lens == "auto" else f_number, focus_m=focus_m)
     gain = None if vignetting is None else gain_of(vignetting, calibration, Camera(chosen, film=film))
     camera = Camera(chosen, film=film, **settings)
+    mask = defined_mask(calibration)
     for columns in COLUMNS:
-        camera = camera.replace(geometry=sampled_geometry(calibration, film, columns, gain))
+        camera = camera.replace(geometry=sampled_geometry(calibration, film, columns, mask, gain))
         if geometry_error(calibration, camera).everywhere_px <= PRECISION_PX:
             break
     return camera if scene_from_camera is None else posed(camera, scene_from_camera)

@@ -19,11 +19,16 @@ _EXTRAPOLATED_CELLS = 3  # beyond the border of the calibrated directions
 
 
 def sampled_geometry(
-    calibration: CalibratedPicture, film: Film, columns: int, gain: Callable[[Array], Array] | None = None
+    calibration: CalibratedPicture,
+    film: Film,
+    columns: int,
+    mask: np.ndarray | None,
+    gain: Callable[[Array], Array] | None = None,
 ) -> CalibratedGeometry:
     """Samples a calibration for a film, at the nodes of a grid with this number of columns of cells.
 
-    gain: function of pixels (..., 2) that returns factors of the irradiance. Raises InputError if no pixel has a ray.
+    mask: see defined_mask. gain: function of pixels (..., 2) that returns factors of the irradiance. Raises InputError
+    if no pixel has a ray.
     """
     width, height = calibration.size
     pixels = node_pixels(calibration, columns, max(1, round(columns * height / width)))
@@ -39,7 +44,7 @@ def sampled_geometry(
         margin=MARGIN,
         directions=directions,
         gain=None if gain is None else gain(pixels).astype(np.float32),
-        defined=_mask(calibration),
+        defined=mask,
         max_angle_deg=float(np.degrees(max_angle)),
         positions=_positions(calibration, max_angle),
         pinhole=(focal_x / width, focal_y / height, skew / width, centre_x / width, centre_y / height),
@@ -90,7 +95,7 @@ def _shifted(values: np.ndarray, step: int, axis: int) -> np.ndarray:
     return result
 
 
-def _mask(calibration: CalibratedPicture) -> np.ndarray | None:
+def defined_mask(calibration: CalibratedPicture) -> np.ndarray | None:
     """Returns (rows, columns) booleans, True in the cells of the picture that have a ray; None if all have one."""
     width, height = calibration.size
     scale = min(1.0, _MAX_MASK_SIDE / max(width, height))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
@@ -150,6 +151,16 @@ def tilt_homography(tau_x: float, tau_y: float) -> Array:
 def camera_matrix(fx: float, fy: float, cx: float, cy: float, skew: float = 0.0) -> Array:
     """Returns the (3, 3) matrix K."""
     return np.array([[fx, skew, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
+
+
+def camera_matrix_near_axis(project: Callable[[Array], tuple[Array, Integers]]) -> Array:
+    """Returns the (3, 3) matrix K of the pinhole camera near the axis of a model, by differences of its pixels."""
+    step = 1e-3
+    axes = np.array([[0, 0, 1], [step, 0, 1], [0, step, 1], [-step, 0, 1], [0, -step, 1]], dtype=float)
+    centre, right, down, left, up = project(axes)[0]
+    matrix = np.eye(3)
+    matrix[:2] = np.column_stack([(right - left) / (2 * step), (down - up) / (2 * step), centre])
+    return matrix
 
 
 def shift(x: float, y: float) -> Array:

@@ -91,8 +91,31 @@ class Equidistant:
         return np.sin(angle), np.cos(angle)
 
 
+class _Sphere:
+    """Models with a unit sphere whose domain is a cone about the axis."""
+
+    xi: float
+    refusal: PointStatus
+
+    @property
+    def _least_cosine(self) -> float:
+        """Cosine of the largest angle to the axis."""
+        raise NotImplementedError
+
+    @property
+    def largest_angle(self) -> float:
+        return float(np.arccos(self._least_cosine))
+
+    @property
+    def scale(self) -> float:
+        return 1 / (1 + self.xi)
+
+    def status(self, rho: Array, z: Array) -> Integers:
+        return refused(z > self._least_cosine * np.hypot(rho, z), self.refusal)
+
+
 @dataclass(frozen=True)
-class UnifiedSphere:
+class UnifiedSphere(_Sphere):
     """rho / (z + xi d), d = hypot(rho, z): the unified model (C. Mei and P. Rives, ICRA 2007)."""
 
     xi: float
@@ -105,17 +128,6 @@ class UnifiedSphere:
     @property
     def largest(self) -> float:
         return np.inf if self.xi <= 1 else 1 / np.sqrt(self.xi**2 - 1)
-
-    @property
-    def largest_angle(self) -> float:
-        return float(np.arccos(self._least_cosine))
-
-    @property
-    def scale(self) -> float:
-        return 1 / (1 + self.xi)
-
-    def status(self, rho: Array, z: Array) -> Integers:
-        return refused(z > self._least_cosine * np.hypot(rho, z), self.refusal)
 
     def distance(self, rho: Array, z: Array) -> Array:
         return rho / (z + self.xi * np.hypot(rho, z))
@@ -132,7 +144,7 @@ def _sphere_limit(alpha: float) -> float:
 
 
 @dataclass(frozen=True)
-class DoubleSphere:
+class DoubleSphere(_Sphere):
     """The double-sphere model (V. Usenko, N. Demmel and D. Cremers, 3DV 2018, arXiv 1807.08957, section 3.3)."""
 
     xi: float
@@ -147,17 +159,6 @@ class DoubleSphere:
     @property
     def largest(self) -> float:
         return np.inf if self.alpha <= 0.5 else 1 / np.sqrt(2 * self.alpha - 1)
-
-    @property
-    def largest_angle(self) -> float:
-        return float(np.arccos(self._least_cosine))
-
-    @property
-    def scale(self) -> float:
-        return 1 / (1 + self.xi)
-
-    def status(self, rho: Array, z: Array) -> Integers:
-        return refused(z > self._least_cosine * np.hypot(rho, z), self.refusal)
 
     def distance(self, rho: Array, z: Array) -> Array:
         shifted = self.xi * np.hypot(rho, z) + z

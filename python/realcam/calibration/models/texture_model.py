@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arrays import Array, Booleans, Integers
 from ..status import PointStatus
+from .central import camera_matrix_near_axis
 
 
 @dataclass(frozen=True)
@@ -40,12 +41,7 @@ class TextureModel:
 
     @property
     def camera_matrix(self) -> Array:
-        step = 1e-3
-        axes = np.array([[0, 0, 1], [step, 0, 1], [0, step, 1], [-step, 0, 1], [0, -step, 1]], dtype=float)
-        centre, right, down, left, up = self.project(axes)[0]
-        matrix = np.eye(3)
-        matrix[:2] = np.column_stack([(right - left) / (2 * step), (down - up) / (2 * step), centre])
-        return matrix
+        return camera_matrix_near_axis(self.project)
 
     def project(self, points: Array) -> tuple[Array, Integers]:
         length = np.linalg.norm(points, axis=1)
