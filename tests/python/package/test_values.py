@@ -17,6 +17,7 @@ from realcam import pickling
 from .picklable_values import MAKERS, camera, floor_scene, lens, scene
 
 UNHASHABLE = {
+    "CalibratedGeometry",
     "CoatingResponse",
     "Scene",
     "Spot",
