@@ -97,6 +97,11 @@ OTHERS = [
     ),
 ]
 
+# Cements, by a power series: coefficients of 1, l^-2, l^-4 in um.
+CEMENTS = {
+    "Optical cement: Norland Products, NOA 61": ("NOA61", [1.5375, 0.00829045, -0.000211046]),
+}
+
 # Plastics have only n_d and V_d, because samples differ by 1e-3 in index and by several units in V_d.
 PLASTICS = (
     "Optical plastics: n_d and V_d as makers state them, and lens-design programs have them under these names",
@@ -243,6 +248,12 @@ def plastics_lines():
     return [f"# {title}", *(f'"{name}" = {{ n_d = {n_d}, V_d = {v_d} }}' for name, (n_d, v_d) in plastics.items())]
 
 
+def cement_lines():
+    """TOML lines of the cements."""
+    entries = [(f"# {title}", f'"{name}" = {{ cauchy = {a} }}') for title, (name, a) in CEMENTS.items()]
+    return [line for entry in entries for line in entry]
+
+
 def extend(catalogue, database):
     """Adds missing materials to a catalogue file, whose existing entries are not changed.
 
@@ -255,7 +266,7 @@ def extend(catalogue, database):
         for name in re.findall(r'^"([^"]+)" =', "\n".join(lines), re.MULTILINE):
             owners.setdefault(bare(name), set()).add(maker)
     candidates = {maker: list(glasses_of_database(database / maker)) for maker, *_ in MAKERS}
-    for names in [*(names for _, names, *_ in OTHERS), PLASTICS[1]]:
+    for names in [*(names for _, names, *_ in OTHERS), PLASTICS[1], [name for name, _ in CEMENTS.values()]]:
         for name in names:
             owners.setdefault(bare(name), set()).add("misc")
     for maker, glasses in candidates.items():
@@ -281,8 +292,9 @@ def extend(catalogue, database):
         if lines[0] not in makers["misc"]:
             makers["misc"] += [f"# {title}", *lines]
             counts["copied"] += len(lines)
-    if plastics_lines()[0] not in makers["misc"]:
-        makers["misc"] += plastics_lines()
+    for lines in (plastics_lines(), cement_lines()):
+        if lines[0] not in makers["misc"]:
+            makers["misc"] += lines
     head = re.sub(r"(\d+) (copied|fitted|table)", lambda m: f"{int(m[1]) + counts[m[2]]} {m[2]}", head)
     sections = ["\n".join(lines) + "\n" for lines in makers.values()]
     catalogue.write_text("\n".join([head, *sections]), encoding="utf-8")
@@ -338,7 +350,7 @@ def main():
         lines.append(f"# {title}")
         lines += [f'"{name}" = {{ {sellmeier_line(b, c)} }}' for name in names]
         counts["copied"] = counts.get("copied", 0) + len(names)
-    lines += plastics_lines()
+    lines += plastics_lines() + cement_lines()
     print(
         "\n".join(
             [

@@ -68,7 +68,7 @@ void write_noise(JsonWriter& json, const std::optional<NoiseGoal>& goal, const I
         return;
     }
     json.key("noise").begin_object();
-    json.key("wanted").number(goal->noise).key("unit").text(goal->unit == NoiseUnit::codes ? "codes" : "share");
+    json.key("goal").number(goal->noise).key("unit").text(goal->unit == NoiseUnit::codes ? "codes" : "share");
     json.key("is_reached").truth(image.shortfall.empty()).key("shortfall").text(image.shortfall);
     json.end();
 }

@@ -39,22 +39,24 @@ void set_number(Key, Shown, Request r, Value value) {
         member.reset();
 }
 
-template <auto... path>
-void set_whole(Key, Shown shown, Request r, Value value) {
+/// Sets the whole number at `path`, from `least` to `most`. Without a value, it is removed.
+template <std::int64_t least, std::int64_t most, auto... path>
+void set_whole(Key key, Shown shown, Request r, Value value) {
     auto& member = at<path...>(r);
+    if constexpr (IsOptional<std::remove_reference_t<decltype(member)>>::value) {
+        if (std::holds_alternative<std::monostate>(value)) {
+            member.reset();
+            return;
+        }
+    }
     const std::int64_t* const whole = std::get_if<std::int64_t>(&value);
-    const auto store = [&]<class Member>(Member& to) {
-        using Limits = std::numeric_limits<Member>;
-        if (*whole < static_cast<std::int64_t>(Limits::min()) || *whole > static_cast<std::int64_t>(Limits::max()))
-            throw InputError(shown + " must be a whole number from 0 to " + std::to_string(Limits::max()));
-        to = static_cast<Member>(*whole);
-    };
-    if constexpr (!IsOptional<std::remove_reference_t<decltype(member)>>::value)
-        store(member);
-    else if (whole)
-        store(member.emplace());
+    if (!whole || *whole < least || *whole > most)
+        throw InputError(shown + " must be a whole number from " + std::to_string(least) + " to " +
+                         std::to_string(most) + (key.syntax == Syntax::whole_or_auto ? ", or auto" : ""));
+    if constexpr (IsOptional<std::remove_reference_t<decltype(member)>>::value)
+        member = *whole;
     else
-        member.reset();
+        member = static_cast<std::remove_reference_t<decltype(member)>>(*whole);
 }
 
 template <auto... path>
@@ -127,6 +129,8 @@ SettingValue get_spectrum(const PictureRequest& r) {
     return member ? SettingValue(member->text()) : SettingValue();
 }
 
+constexpr std::int64_t kMaxSpp = 1 << 24;  ///< see validate_spp
+
 /// Sets the number of samples, which replaces a noise goal, or lets the noise goal apply.
 void set_spp(Key key, Shown shown, Request r, Value value) {
     r.settings.spp = RenderSettings().spp;
@@ -134,7 +138,7 @@ void set_spp(Key key, Shown shown, Request r, Value value) {
     if (std::holds_alternative<std::monostate>(value)) return;
     r.sampling = Sampling::counted;
     r.noise = {};
-    set_whole<&PictureRequest::settings, &RenderSettings::spp>(key, shown, r, value);
+    set_whole<1, kMaxSpp, &PictureRequest::settings, &RenderSettings::spp>(key, shown, r, value);
 }
 
 SettingValue get_spp(const PictureRequest& r) {
@@ -161,14 +165,21 @@ std::vector<SpectrumPoint> points_in(const toml::node& node) {
     return points;
 }
 
+/// Returns a number as std::int64_t if it is whole; others are refused by set_whole.
+SettingValue whole_value(double number) {
+    constexpr double kLimit = 0x1p63;
+    if (number != std::floor(number) || !(std::fabs(number) < kLimit)) return number;
+    return static_cast<std::int64_t>(number);
+}
+
 /// Returns the value of a key that the table has.
 SettingValue value_in(const ShotTable& t, Key key) {
     switch (key.syntax) {
         case Syntax::number: return *t.number(key.name);
-        case Syntax::whole: return t.whole<std::int64_t>(key.name, *t.number(key.name));
+        case Syntax::whole: return whole_value(*t.number(key.name));
         case Syntax::whole_or_auto: {
             const std::optional<double> number = t.number_or_auto(key.name, key.wanted);
-            return number ? t.whole<std::int64_t>(key.name, *number) : SettingValue();
+            return number ? whole_value(*number) : SettingValue();
         }
         case Syntax::names: return t.texts(key.name);
         case Syntax::spectrum: {
@@ -247,12 +258,12 @@ std::vector<ShotKey> picture_keys() {
          "A warning is issued if the noise goal is not reached."),
         setting("max_spp", "--max-spp", "N", whole, kWhole,
          "Largest number of samples per pixel, unless spp is a number", "4096", {},
-         set_noise<set_whole<&P::noise, &N::max_spp>>, get_value<&P::noise, &N::max_spp>),
+         set_noise<set_whole<2, kMaxSpp, &P::noise, &N::max_spp>>, get_value<&P::noise, &N::max_spp>),
         setting("seed", "--seed", "N", whole, kWhole, "Seed of the random numbers", "0", {},
-         set_whole<&P::settings, &S::seed>, get_value<&P::settings, &S::seed>, "0 to 2^32 - 1."),
+         set_whole<0, std::numeric_limits<std::uint32_t>::max(), &P::settings, &S::seed>, get_value<&P::settings, &S::seed>, "0 to 2^32 - 1."),
         setting("max_bounces", "--max-bounces", "N", whole_or_auto, "a whole number or auto",
          "Largest number of bounces of light; 0: direct light only", "auto: what the shot calls for", {},
-         set_whole<&P::settings, &S::max_bounces>, get_value<&P::settings, &S::max_bounces>,
+         set_whole<0, kMaxBounces, &P::settings, &S::max_bounces>, get_value<&P::settings, &S::max_bounces>,
          "0 to 64. With auto, threshold_codes decides (docs/plan.md)."),
         setting("transport", "--transport", "NAME", text, one_of(kTransports),
          "paths: all light paths; whitted: direct light, and reflections and refractions of mirrors and smooth glass",
@@ -314,7 +325,7 @@ std::vector<ShotKey> picture_keys() {
          "The others are for comparison: alone: samples from the lights; off: samples of pixels, which never hit point "
          "lights and suns."),
         setting("threads", "--threads", "N", whole, kWhole, "Number of threads; 0: all", "0", {},
-         set_whole<&P::settings, &S::threads>, get_value<&P::settings, &S::threads>),
+         set_whole<0, kMaxThreads, &P::settings, &S::threads>, get_value<&P::settings, &S::threads>),
     };
 }
 // clang-format on

@@ -3,6 +3,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <array>
+#include <cmath>
 #include <optional>
 #include <tuple>
 #include <variant>
@@ -11,6 +13,7 @@
 #include "../../camera/film/camera.hpp"
 #include "../../camera/models/pinhole_camera.hpp"
 #include "../../embree/lens_rays.hpp"
+#include "../../math/fill_unknown.hpp"
 #include "../../math/hypotenuse.hpp"
 #include "../../optics/pupil/film_symmetry.hpp"
 #include "../../optics/pupil/pupil.hpp"
@@ -197,6 +200,17 @@ void require_shape(const py::array& array, int dimensions, int parts, const char
         throw InputError(std::string(name) + " has the wrong shape");
 }
 
+/// Returns the directions of nodes, (rows, columns, 3), with extrapolated unit vectors in place of those that are NaN.
+std::vector<Vec3d> extrapolated_directions(const InputArray<double>& directions) {
+    std::vector<Vec3d> result = elements<Vec3d, 3>(directions);
+    if (result.empty()) return result;
+    std::vector<std::array<double, 3>> nodes = elements<std::array<double, 3>, 3>(directions);
+    fill_unknown(nodes, static_cast<int>(directions.shape(1)));
+    for (std::size_t i = 0; i < result.size(); ++i)
+        if (!std::isfinite(result[i].x)) result[i] = normalized(Vec3d{nodes[i][0], nodes[i][1], nodes[i][2]});
+    return result;
+}
+
 std::shared_ptr<CalibratedGeometry> make_geometry(const Film& film, double margin, const InputArray<double>& directions,
                                                   const std::optional<InputArray<float>>& gain,
                                                   const std::optional<InputArray<bool>>& defined, double max_angle_deg,
@@ -210,7 +224,7 @@ std::shared_ptr<CalibratedGeometry> make_geometry(const Film& film, double margi
     require_shape(directions, 3, 3, "directions");
     geometry.columns = static_cast<int>(directions.shape(1)) - 1;
     geometry.rows = static_cast<int>(directions.shape(0)) - 1;
-    geometry.directions = elements<Vec3d, 3>(directions);
+    geometry.directions = extrapolated_directions(directions);
     if (gain) geometry.gain = elements<float, 1>(*gain);
     if (defined) {
         require_shape(*defined, 2, 0, "defined");
@@ -236,7 +250,8 @@ void bind_geometry(py::module_& m) {
              "defined"_a = py::none(), "max_angle_deg"_a, "positions"_a, "pinhole"_a,
              R"(film: the Film, of which only size and shift count.
 directions: (rows + 1, columns + 1, 3), unit vectors in the axes of the camera, x right, y up, z backward, at nodes in
-  uniform steps over the picture and, on every side, `margin` times its size; from the upper left corner.
+  uniform steps over the picture and, on every side, `margin` times its size; from the upper left corner. NaN where the
+  calibration has no ray: these directions are extrapolated.
 gain: (rows + 1, columns + 1), factors of the irradiance. None: 1.
 defined: (mask rows, mask columns), False where the calibration has no ray. None: True.
 positions: (side, side, 2), picture coordinates, from (0, 0) at the upper left corner to (1, 1), of the direction at an

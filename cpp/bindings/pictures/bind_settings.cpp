@@ -198,9 +198,13 @@ std::string repr_of(const RenderSettings& settings) {
     return "realcam.RenderSettings(" + text + ')';
 }
 
-/// Description of an argument, with a capital first letter as in the table and a full stop.
+/// Description of an argument, with a capital first letter as in the table and a full stop. A number that replaces
+/// "auto", the default of a shot, is named as the default.
 std::string description(const ShotKey& key) {
-    return key.help() + '.' + (*key.details ? ' ' + std::string(key.details) : "");
+    ShotKey own = key;
+    const std::string number = key.syntax == Syntax::whole_or_auto ? initial_text(key) : "";
+    if (!number.empty() && number != "'auto'") own.initial = number.c_str();
+    return own.help() + '.' + (*key.details ? ' ' + std::string(key.details) : "");
 }
 
 /// Returns the docstring of the class.
@@ -213,9 +217,8 @@ std::string class_text() {
                     .cast<std::string>() +
                 '\n';
     return text +
-           "\nSpectra are texts as attributes, and may be (wavelength_nm, value) pairs as arguments. The default of "
-           "spp "
-           "is 64, and\nseconds has none: a shot has other defaults than functions. Raises InputError.";
+           "\nSpectra are texts as attributes, and may be (wavelength_nm, value) pairs as arguments. In a shot, the "
+           "default of spp\nis auto, and seconds has one (docs/shot-files.md). Raises InputError.";
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
 #include "chief_rays.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
+#include "../../math/fill_unknown.hpp"
 #include "../../math/hypotenuse.hpp"
 #include "../../optics/lens/chief_ray.hpp"
 #include "../../optics/trace/film_frame.hpp"
@@ -27,39 +26,6 @@ RayLine line_through(Vec3d point, Vec3d direction, Vec3d centre) {
     return {unit, point - dot(from, unit) * unit};
 }
 
-/// Replaces unknown nodes of a grid (NaN) by linear extrapolation from known neighbours, outwards from these.
-void fill_unknown(std::vector<Values>& nodes, int columns, int rows) {
-    const auto at = [&](int column, int row) -> Values& {
-        return nodes[static_cast<std::size_t>(row * columns + column)];
-    };
-    const auto is_known = [&](int column, int row) {
-        return column >= 0 && column < columns && row >= 0 && row < rows && std::isfinite(at(column, row)[0]);
-    };
-    for (bool changed = true; changed;) {
-        changed = false;
-        std::vector<std::pair<std::size_t, Values>> found;
-        for (int row = 0; row < rows; ++row)
-            for (int column = 0; column < columns; ++column) {
-                if (is_known(column, row)) continue;
-                Values sum{};
-                int count = 0;
-                for (const auto& [right, down] :
-                     {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
-                    if (!is_known(column + right, row + down)) continue;
-                    const bool has_two = is_known(column + 2 * right, row + 2 * down);
-                    const Values &near = at(column + right, row + down),
-                                 &far = has_two ? at(column + 2 * right, row + 2 * down) : near;
-                    for (std::size_t k = 0; k < 6; ++k) sum[k] += 2 * near[k] - far[k];
-                    ++count;
-                }
-                if (count == 0) continue;
-                for (double& value : sum) value /= count;
-                found.emplace_back(static_cast<std::size_t>(row * columns + column), sum);
-            }
-        for (const auto& [index, values] : found) nodes[index] = values, changed = true;
-    }
-}
-
 }  // namespace
 
 LensChiefRays::LensChiefRays(const Camera& camera, const CameraView& view)
@@ -67,28 +33,25 @@ LensChiefRays::LensChiefRays(const Camera& camera, const CameraView& view)
     if (has_real_pupil(camera.model)) surfaces_.emplace(camera.lens, camera.lens.wavelength_nm);
 }
 
-std::optional<RayLine> LensChiefRays::trace(Vec2<double> film, Vec2<double>* cosines) const {
+std::optional<RayLine> LensChiefRays::trace(Vec2<double> film) const {
     if (surfaces_) {
         const std::optional<ChiefRay> ray = chief_ray_of_film_point(*surfaces_, film);
-        if (!ray) return std::nullopt;
-        if (cosines) *cosines = cosines_of(*ray);
-        return line_of(*ray);
+        return ray ? std::optional(line_of(*ray)) : std::nullopt;
     }
     const LensFrameRay ray = ideal_chief_ray(view_, {static_cast<float>(film.x), static_cast<float>(film.y)});
     const Vec3d front = {0, 0, -1000.0 * static_cast<double>(view_.front_vertex_m)};
     return line_through(front + static_cast<Vec3d>(ray.origin_mm), static_cast<Vec3d>(ray.direction), centre_);
 }
 
-std::optional<RayLine> LensChiefRays::trace_near(Vec2<double> film, Vec2<double>& cosines) const {
-    const std::optional<ChiefRay> ray = chief_ray_near(*surfaces_, film, cosines);
-    if (!ray) return std::nullopt;
-    cosines = cosines_of(*ray);
-    return line_of(*ray);
-}
-
-Vec2<double> LensChiefRays::cosines_of(const ChiefRay& ray) const {
-    const double index = surfaces_->film_index();
-    return {-index * ray.film_direction.x, -index * ray.film_direction.y};
+std::vector<RayLine> LensChiefRays::trace_meridian(double film_radius, int steps) const {
+    std::vector<RayLine> lines;
+    MeridionalChiefRays chief_rays(*surfaces_);
+    for (int k = 0; k <= steps; ++k) {
+        const std::optional<ChiefRay> ray = chief_rays.next(k * film_radius / steps);
+        if (!ray) break;
+        lines.push_back(line_of(*ray));
+    }
+    return lines;
 }
 
 RayLine LensChiefRays::line_of(const ChiefRay& ray) const {
@@ -126,21 +89,13 @@ RayLine ChiefRays::at(Vec2<double> film) const {
 
 std::optional<ChiefRays::Radial> ChiefRays::radial_rays(double film_radius) const {
     std::vector<double> angles, offsets;
-    Vec2<double> cosines = {0, 0};
-    double before = 0;  // cosine of the ray before the last one
-    for (int k = 0; k <= kSteps; ++k) {
-        const Vec2<double> film = {0, k * film_radius / kSteps};
-        Vec2<double> guess = {0, 2 * cosines.y - before};
-        std::optional<RayLine> ray = traced_.trace_near(film, guess);
-        if (!ray) ray = traced_.trace(film, &guess);
-        if (!ray) break;
-        before = k == 0 ? guess.y : cosines.y;
-        cosines = guess;
+    for (const RayLine& ray : traced_.trace_meridian(film_radius, kSteps)) {
+        const bool is_axis = angles.empty();
         // A film point at +y sees scene points at -y.
-        const double angle = std::atan2(-ray->direction.y, -ray->direction.z);
-        const Vec3d foot = ray->foot - traced_.centre();
-        angles.push_back(k == 0 ? 0 : angle);
-        offsets.push_back(k == 0 ? 0 : -foot.y * std::cos(angle) + foot.z * std::sin(angle));
+        const double angle = std::atan2(-ray.direction.y, -ray.direction.z);
+        const Vec3d foot = ray.foot - traced_.centre();
+        angles.push_back(is_axis ? 0 : angle);
+        offsets.push_back(is_axis ? 0 : -foot.y * std::cos(angle) + foot.z * std::sin(angle));
     }
     if (angles.size() < 3) return std::nullopt;
     for (std::vector<double>* values : {&angles, &offsets})
@@ -165,7 +120,7 @@ std::optional<ChiefRays::Plane> ChiefRays::plane_rays(const Film& film, double m
             has_rays = true;
         }
     if (!has_rays) return std::nullopt;
-    fill_unknown(nodes, kColumns + 1, kRows + 1);
+    fill_unknown(nodes, kColumns + 1);
     return Plane{SmoothGrid<6>(kColumns + 1, kRows + 1, nodes), first, {kColumns / width, kRows / height}};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <vector>
 
 #include "../../math/curves.hpp"
 #include "../../math/smooth_grid.hpp"
@@ -22,18 +23,17 @@ public:
     /// `view`: view of the camera, for ideal models.
     LensChiefRays(const Camera& camera, const CameraView& view);
 
-    /// Chief ray of a film point; std::nullopt if there is none. `cosines`: receives x and y of its optical direction
-    /// at the film, towards the scene; null for ideal models.
-    std::optional<RayLine> trace(Vec2<double> film, Vec2<double>* cosines = nullptr) const;
-    /// The same for a lens with surfaces, from a known chief ray close to it, whose `cosines` are replaced.
-    std::optional<RayLine> trace_near(Vec2<double> film, Vec2<double>& cosines) const;
+    /// Chief ray of a film point; std::nullopt if there is none.
+    std::optional<RayLine> trace(Vec2<double> film) const;
+    /// Chief rays of the film points (0, y) of a rotationally symmetric lens with surfaces, with y from 0 to
+    /// `film_radius` in equal steps. They end at the first point that has none.
+    std::vector<RayLine> trace_meridian(double film_radius, int steps) const;
 
     Vec3d centre() const { return centre_; }  ///< centre_of_projection_mm
     bool is_ideal() const { return !surfaces_.has_value(); }  ///< true if a model replaces the lens
 
 private:
     RayLine line_of(const ChiefRay& ray) const;
-    Vec2<double> cosines_of(const ChiefRay& ray) const;
 
     CameraView view_;
     Vec3d centre_, film_centre_;

@@ -85,7 +85,7 @@ RadialProjection::RadialProjection(const CameraSetup& setup, ProjectionRay ray, 
         ends_in_film_ = image_radius < max_radius_;
         if (ends_in_film_) max_radius_ = (1 - 1e-4) * image_radius;  // at the very edge the bundle has no width
         trace_centroid_rays(with_round_stop(lens), view.pupil, loop);
-        if (ray == ProjectionRay::chief) trace_chief_rays(with_round_stop(lens), view.pupil);
+        if (ray == ProjectionRay::chief) trace_chief_rays(with_round_stop(lens));
     } else {
         const double image_distance = camera_detail::ideal_lens_of(lens, data).image_distance;
         for (int k = 0; k <= kSteps; ++k) set_ideal_ray(k, view, {pupil, image_distance});
@@ -212,25 +212,13 @@ void RadialProjection::trace_centroid_rays(const LensSystem& lens, const PupilVi
     }
 }
 
-void RadialProjection::trace_chief_rays(const LensSystem& lens, const PupilView& pupil) {
+void RadialProjection::trace_chief_rays(const LensSystem& lens) {
     const RaysFromFilm from_film(lens, lens.wavelength_nm);
-    double cosine = 0, change = 0;
+    MeridionalChiefRays chief_rays(from_film);
     for (int k = 0; k <= kSteps; ++k) {
-        // First guess: extrapolated from the last two rays. Second guess, for the axis and after a gap: the centre of
-        // the pupil.
-        const PupilLookup row(pupil, static_cast<float>(radius_of(k)), 0);
-        const double guesses[2] = {cosine + change, static_cast<double>(row.box.centre_l)};
-        const double light = rays_[static_cast<std::size_t>(k)].light;
-        set_ray(k, std::nullopt, light);
-        for (const double guess : guesses) {
-            const std::optional<ChiefRay> ray = chief_ray_near(from_film, {0, radius_of(k)}, {0, guess});
-            if (!ray) continue;
-            set_ray(k, SceneRay{ray->scene, -ray->scene_direction}, light);
-            const double found = -from_film.film_index() * ray->film_direction.y;
-            change = found - cosine;
-            cosine = found;
-            break;
-        }
+        const std::optional<ChiefRay> ray = chief_rays.next(radius_of(k));
+        set_ray(k, ray ? std::optional(SceneRay{ray->scene, -ray->scene_direction}) : std::nullopt,
+                rays_[static_cast<std::size_t>(k)].light);
     }
 }
 

@@ -68,7 +68,7 @@ private:
     void trace_centroid_rays(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop);
 
     /// Replaces the rays by chief rays; keeps their light.
-    void trace_chief_rays(const LensSystem& lens, const PupilView& pupil);
+    void trace_chief_rays(const LensSystem& lens);
 
     /// Sets the ray of step k for a camera model without surfaces: it passes through the centre of the pupil.
     void set_ideal_ray(int k, const CameraView& view, ThinLensPosition thin);

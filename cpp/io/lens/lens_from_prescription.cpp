@@ -160,6 +160,20 @@ private:
         }
     }
 
+    /// Reduces the semi-diameter of a surface that is smaller than its own rim, such as a hemisphere, to the surface:
+    /// no ray meets it farther out.
+    void fit_rim_to_surface(std::size_t i) {
+        Surface& surface = lens_.surfaces[i];
+        const double inverse_square = (1 + surface.conic) * surface.curvature * surface.curvature;
+        if (!surface.form.has_conic_base() || !(inverse_square > 0)) return;
+        const double end = (1 - 1e-9) / std::sqrt(inverse_square);
+        if (!(surface.clear_semi_diameter > end)) return;
+        warn("surface " + std::to_string(row_of(i).number) + ": its clear semi-diameter of " +
+             lens_checks_detail::short_mm(surface.clear_semi_diameter) + " is larger than the surface, and becomes " +
+             lens_checks_detail::short_mm(end));
+        surface.clear_semi_diameter = end;
+    }
+
     /// Stores a form without rotational symmetry for later, and removes it from the surface.
     void store_asymmetric_form(std::size_t i) {
         forms_.resize(surface_rows_.size());
@@ -176,6 +190,7 @@ private:
                 row.clear_semi_diameter > 0 ? row.clear_semi_diameter : kGuessedFraction * known_pupil_diameter();
             const std::string error = set_aspheric_terms(row, rim, lens_.surfaces[i]);
             if (!error.empty()) unsupported_.push_back({error, row.line, row.number});
+            fit_rim_to_surface(i);
             store_asymmetric_form(i);
         }
         report_unsupported(unsupported_, p_.file, options_);

@@ -183,6 +183,17 @@ std::optional<ChiefRay> chief_ray_of_film_point(const RaysFromFilm& rays, Vec2<d
     return {};
 }
 
+std::optional<ChiefRay> MeridionalChiefRays::next(double film_y) {
+    const Vec2<double> film{0, film_y};
+    std::optional<ChiefRay> ray = chief_ray_near(rays_, film, {0, cosine_ + change_});
+    if (!ray) ray = chief_ray_of_film_point(rays_, film);
+    if (!ray) return std::nullopt;
+    const double cosine = -rays_.film_index() * ray->film_direction.y;
+    change_ = cosine - cosine_;
+    cosine_ = cosine;
+    return ray;
+}
+
 namespace {
 
 /// Returns the error of a chief ray's direction relative to a field angle: its x component, and its component across

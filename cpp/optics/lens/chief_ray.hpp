@@ -70,6 +70,22 @@ std::optional<ChiefRay> chief_ray_of_film_point(const RaysFromFilm& rays, Vec2<d
 /// direction (a unit vector times the index) towards the scene. Returns std::nullopt if it does not converge.
 std::optional<ChiefRay> chief_ray_near(const RaysFromFilm& rays, Vec2<double> film, Vec2<double> cosines);
 
+/// Chief rays of the film points on the positive y axis of a rotationally symmetric lens, one after the other from the
+/// axis outwards, in equal steps.
+class MeridionalChiefRays {
+public:
+    /// `rays` must outlive this object.
+    explicit MeridionalChiefRays(const RaysFromFilm& rays) : rays_(rays) {}
+
+    /// Returns the chief ray of the next film point, whose y is `film_y`, mm. It is searched from an extrapolation of
+    /// the last two rays or, if that fails, as by chief_ray_of_film_point. Returns std::nullopt if no ray is found.
+    std::optional<ChiefRay> next(double film_y);
+
+private:
+    const RaysFromFilm& rays_;
+    double cosine_ = 0, change_ = 0;  ///< of the last ray's y at the film, and its difference from the ray before
+};
+
 /// Finds the chief ray at a field angle: in the y-z plane of the camera, at `angle_rad` to its z axis; for positive
 /// angles, the light travels upwards, towards +y. The ray is found in steps of at most 5 degrees from the film's
 /// centre. Returns std::nullopt if a step fails.

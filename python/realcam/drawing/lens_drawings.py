@@ -48,8 +48,9 @@ def draw(
     InputError if no light passes the lens or an option is invalid.
     """
     style = Style(theme_named(theme), radius_colours, marks)
-    section = cross_section(
+    section, other = _sections(
         self,
+        ghost,
         plane=plane,
         rays=rays,
         rays_from=rays_from,
@@ -58,7 +59,6 @@ def draw(
         wavelengths_nm=wavelengths_nm,
         object_distance_m=object_distance_m,
     )
-    other = None if ghost is None else cross_section(ghost, plane=plane, rays=0)
     row = Row(self.title or self.name, data_of(self, section), section, other)
     # Rays that start at one film point always intersect there: insets would show no spot.
     return figure_of([row], style, width_px=width_px, insets=insets and rays_from == "object")
@@ -88,29 +88,18 @@ def draw_cross_section(
     rays: int = 7,
     *,
     plane: str = "yz",
-    rays_from: str = "object",
-    fields: Sequence[float] = (0.0, 0.7, 1.0),
-    fields_deg: Sequence[float] | None = None,
-    wavelengths_nm: Sequence[float] | None = None,
-    object_distance_m: float | None = None,
     radius_colours: bool = False,
     marks: bool = False,
     ghost: Lens | None = None,
     theme: str = "light",
+    **options: Any,
 ) -> CrossSection:
-    """Draws a cross-section on existing axes, without insets, and returns its arrays. Options as for Lens.draw."""
+    """Draws a cross-section on existing axes, without insets, and returns its arrays.
+
+    options: those of realcam.cross_section. The others are those of Lens.draw.
+    """
     style = Style(theme_named(theme), radius_colours, marks)
-    section = cross_section(
-        lens,
-        plane=plane,
-        rays=rays,
-        rays_from=rays_from,
-        fields=fields,
-        fields_deg=fields_deg,
-        wavelengths_nm=wavelengths_nm,
-        object_distance_m=object_distance_m,
-    )
-    other = None if ghost is None else cross_section(ghost, plane=plane, rays=0)
+    section, other = _sections(lens, ghost, plane=plane, rays=rays, **options)
     prepare_axes(axes, extent_of(section, style), style, plane)
     draw_section(section, axes, style, ghost=other)
     # A dollar sign in a title must not begin a formula.
@@ -119,29 +108,36 @@ def draw_cross_section(
     return section
 
 
+def _sections(
+    lens: Lens, ghost: Lens | None, *, plane: str, **options: Any
+) -> tuple[CrossSection, CrossSection | None]:
+    """Returns the cross-sections of a lens and of its other state; the latter is without rays."""
+    other = None if ghost is None else cross_section(ghost, plane=plane, rays=0)
+    return cross_section(lens, plane=plane, **options), other
+
+
 def draw_states(
     states: Sequence[tuple[str, Lens]],
     *,
-    rays: int = 7,
     rays_from: str = "object",
-    fields: Sequence[float] = (0.0, 0.7, 1.0),
-    wavelengths_nm: Sequence[float] | None = None,
     radius_colours: bool = False,
     marks: bool = False,
     insets: bool = True,
     theme: str = "light",
     width_px: int = 1600,
+    **options: Any,
 ) -> Figure:
     """Draws several lenses, or states of one, as rows of the same scale with their films aligned.
 
-    states: (name, lens) pairs, as states_of gives them. Raises InputError.
+    states: (name, lens) pairs, as states_of gives them. options: those of realcam.cross_section. The others are those
+    of Lens.draw. Raises InputError.
     """
     if not states:
         raise InputError("there is no lens to draw")
     style = Style(theme_named(theme), radius_colours, marks)
     rows = []
     for name, lens in states:
-        section = cross_section(lens, rays=rays, rays_from=rays_from, fields=fields, wavelengths_nm=wavelengths_nm)
+        section = cross_section(lens, rays_from=rays_from, **options)
         rows.append(Row(name, data_of(lens, section), section))
     return figure_of(rows, style, width_px=width_px, insets=insets and rays_from == "object", align="film")
 

@@ -254,7 +254,7 @@ def test_bench_says_where_the_benchmarks_are(tmp_path: Path, python: Said, monke
         ("render quad.obj -o a.png --noise 0", "noise must be at least 1e-9"),
         ("render quad.obj -o a.png --seconds 0", "seconds must be above 0"),
         ("render quad.obj -o a.png --seconds inf", '--seconds must be a number; it is "inf"'),
-        ("render quad.obj -o a.png --max-spp 0", "max_spp must lie between 2 and"),
+        ("render quad.obj -o a.png --max-spp 0", "--max-spp must be a whole number from 2 to 16777216"),
         ("render quad.obj -o a.png --quality best", '--quality must be draft, photo or reference; it is "best"'),
         ("render quad.obj -o a.png --threshold-px 0", "must be above 0"),
         ("render quad.obj -o a.png --layers all", "layers need an .exr file, and no --output is one"),
@@ -320,7 +320,7 @@ def test_without_a_number_of_samples_the_noise_and_the_time_decide(tmp_path: Pat
     aim = "realcam: samples are taken until the noise is {}; --noise-codes, --seconds or --spp change this\n"
     for scene in ("quad.obj", "shot.toml"):
         image, told = figures(scene)
-        assert (image["noise"]["wanted"], image["noise"]["unit"]) == (2, "codes")
+        assert (image["noise"]["goal"], image["noise"]["unit"]) == (2, "codes")
         assert image["noise"]["is_reached"]
         assert aim.format("2 codes of 255, for 60 s at most") in told
     # A noise goal alone has no time limit; a time limit alone keeps the default noise goal.
@@ -338,7 +338,7 @@ def test_without_a_number_of_samples_the_noise_and_the_time_decide(tmp_path: Pat
 def test_noise_and_time_that_are_out_of_reach_end_with_one_line(tmp_path: Path) -> None:
     """The picture is written, and a warning says how far it got."""
     reached, _ = render(tmp_path, "--spp", "auto", "--noise", "0.2", "--environment", "100")
-    assert reached["noise"] == {"wanted": 0.2, "unit": "share", "is_reached": True, "shortfall": ""}
+    assert reached["noise"] == {"goal": 0.2, "unit": "share", "is_reached": True, "shortfall": ""}
     for words in (["--noise-codes", 1e-9, "--max-spp", 32], ["--noise-codes", 1e-9, "--seconds", 1e-9]):
         figures, told = render(tmp_path, "--spp", "auto", *words)
         assert figures["noise"]["is_reached"] is False

@@ -216,6 +216,39 @@ def test_rims_that_cross_beyond_the_light(tmp_path: Path) -> None:
         load(tmp_path, "reached.zmx", crossing(6.0).replace("ENPD 2", "ENPD 11.5").replace("DIAM 2 ", "DIAM 6 "))
 
 
+def test_a_decimal_comma_of_an_index(tmp_path: Path) -> None:
+    with_point, _ = load(tmp_path, "point.zmx", zemax([OBJECT, *SINGLET]))
+    text = zemax([OBJECT, *SINGLET]).replace("1.618 63.4", "1,618 63,4")
+    with_comma, told = load(tmp_path, "comma.zmx", text)
+    assert with_comma.surfaces == with_point.surfaces
+    assert 'the comma of "1,618" is read as a decimal point' in told
+    with pytest.raises(rc.LensFileError, match=r'n_d must be a finite number; it is "1,6,18"'):
+        load(tmp_path, "commas.zmx", text.replace("1,618", "1,6,18"))
+
+
+def test_a_rim_beyond_its_hemisphere(tmp_path: Path) -> None:
+    """No ray meets a sphere of 12 mm farther than 12 mm from its axis, whatever the file says."""
+    far, told = load(tmp_path, "far.zmx", zemax([OBJECT, surface(12, 3, 12.3, CROWN), *SINGLET[1:]]))
+    near, _ = load(tmp_path, "near.zmx", zemax([OBJECT, surface(12, 3, 11.9, CROWN), *SINGLET[1:]]))
+    assert far.surfaces[0].clear_semi_diameter_mm == pytest.approx(12, rel=1e-8)
+    assert "its clear semi-diameter of 12.3 mm is larger than the surface, and becomes 12 mm" in told
+    assert far.first_order() == near.first_order()
+
+
+def test_cement_of_norland(tmp_path: Path) -> None:
+    """Norland's data as lens makers have them, n^2 = A0 + A2 / l^2 + A3 / l^4 + A4 / l^6 + A5 / l^8."""
+    text = zemax([OBJECT, surface(12, 3, 8, "  GLAS NOA61 0 0 1.5 40\n"), *SINGLET[1:]]).replace("SCHOTT", "NOA61 MISC")
+    lens, _ = load(tmp_path, "cement.zmx", text)
+    for nm in (486.1327, 587.5618, 656.2725):
+        square = sum(
+            a / (nm / 1000) ** p
+            for a, p in zip(
+                (2.36390625, 0.025493134, -0.000580235, -0.349933e-5, 0.445404e-7), (0, 2, 4, 6, 8), strict=True
+            )
+        )
+        assert lens.surfaces[0].material.index(nm) == pytest.approx(math.sqrt(square), abs=1e-7)
+
+
 def test_a_medium_of_index_minus_one_is_a_mirror(tmp_path: Path) -> None:
     texts = [
         zemax(

@@ -233,7 +233,7 @@ def test_layers_and_progress_go_along(device: str) -> None:
         ({"noise_codes": float("inf")}, "noise_codes must be"),
         ({"noise": 0.1, "noise_codes": 1}, "exclude each other"),
         ({"seconds": 0}, "seconds must be above 0"),
-        ({"max_spp": 1}, "max_spp must lie between 2 and"),
+        ({"max_spp": 1}, "max_spp must be a whole number from 2 to"),
     ],
 )
 def test_goals_that_are_none_are_refused(settings: dict[str, object], message: str) -> None:

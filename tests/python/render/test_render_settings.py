@@ -118,13 +118,13 @@ def test_a_word_that_is_none_is_told(words: dict[str, Any], sentence: str) -> No
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        ({"spp": 0}, "spp must lie between 1 and"),
-        ({"spp": 1 << 25}, "spp must lie between 1 and"),
+        ({"spp": 0}, "spp must be a whole number from 1 to 16777216, or auto"),
+        ({"spp": 1 << 25}, "spp must be a whole number from 1 to 16777216, or auto"),
         ({"max_bounces": 65}, 'max_bounces must be "auto", or lie between'),
         ({"seed": -1}, "seed must be a whole number from 0 to 4294967295"),
         ({"seed": 1 << 32}, "seed must be a whole number from 0 to 4294967295"),
-        ({"threads": -1}, "threads must be 0 (all) or a number up to 4096"),
-        ({"threads": 4097}, "threads must be 0 (all) or a number up to 4096"),
+        ({"threads": -1}, "threads must be a whole number from 0 to 4096"),
+        ({"threads": 4097}, "threads must be a whole number from 0 to 4096"),
         ({"clamp_cd_m2": float("nan")}, "clamp must be 0"),
         ({"threshold_px": 0}, "must be above 0"),
         ({"effects": "sharpness"}, 'unknown effect "sharpness"'),
@@ -170,7 +170,7 @@ def test_shot_files_and_the_command_line_have_the_same_defaults(tmp_path: Path) 
         assert told[name] == getattr(DEFAULTS, name), name
     assert told["max_bounces"] == image.settings.max_bounces
     assert (tuple(told["effects"]), told["plan"]) == (image.effects, image.plan)
-    assert (told["spp"], told["noise"]["wanted"], told["noise"]["unit"]) == (image.spp, 2, "codes")
+    assert (told["spp"], told["noise"]["goal"], told["noise"]["unit"]) == (image.spp, 2, "codes")
 
 
 def test_a_value_and_its_words_make_the_same_picture() -> None:

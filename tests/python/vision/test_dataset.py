@@ -267,7 +267,7 @@ def test_files_of_other_programs_stay(tmp_path: Path, name: str, content: bytes 
             (words, r"\d+ or less")
             for words in ({"count": 10**12}, {"size": (10**6, 10)}, {"objects": (1, 10**9)}, {"board": (10**6, 5)})
         ),
-        ({"spp": 10**12}, r"a whole number from 0 to \d+"),
+        ({"spp": 10**12}, r"a whole number from 1 to \d+, or auto"),
     ],
     ids=str,
 )

@@ -338,6 +338,19 @@ private:
         if (source != 0 && (side == 1 || source > 2)) unsupported("a tilt that is picked up (SCBD)");
     }
 
+    /// Returns n_d or V_d in GLAS, 0 if it is absent. Some editors write these two with a decimal comma.
+    double glass_number(const C& c, std::size_t i, const char* what) {
+        const std::string_view word = i < c.size() ? c[i].text : "";
+        const std::size_t comma = word.find_first_of(",.");
+        if (comma == word.npos || word[comma] != ',' || word.find_first_of(",.", comma + 1) != word.npos)
+            return c.number_or(i, what, 0);
+        std::string with_point(word);
+        with_point[comma] = '.';
+        remark("surface " + std::to_string(lines_.surface()) + ": the comma of " + in_quotes(word) +
+               " is read as a decimal point");
+        return lines_.number_of(with_point, what);
+    }
+
     /// Reads GLAS: name, kind, surface of a pickup, n_d, V_d, partial dispersion.
     void read_glass(const C& c) {
         if (c.size() == 0) lines_.fail("GLAS needs the name of the glass");
@@ -348,8 +361,8 @@ private:
         s.pickup = s.glass_kind == 2 && c.size() > 2
                        ? c.whole(2, "the surface whose glass is picked up", 0, kMaxSurfaceNumber)
                        : 0;
-        s.n_d = c.number_or(3, "the glass's n_d", 0);
-        s.v_d = c.number_or(4, "the glass's V_d", 0);
+        s.n_d = glass_number(c, 3, "the glass's n_d");
+        s.v_d = glass_number(c, 4, "the glass's V_d");
         s.partial = c.number_or(5, "the glass's partial dispersion", 0);
         if (s.has_index_pair())
             s.index_hint =

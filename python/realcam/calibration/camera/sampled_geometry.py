@@ -15,7 +15,6 @@ from .calibrated_picture import CalibratedPicture
 MARGIN = 0.1  # of the picture's size, on every side: defocused light beside the picture falls into it
 _INVERSE_SIDE = 257  # nodes along a side of the grid of positions
 _MAX_MASK_SIDE = 1024  # cells along the longer side of the mask
-_EXTRAPOLATED_CELLS = 3  # beyond the border of the calibrated directions
 
 
 def sampled_geometry(
@@ -36,7 +35,6 @@ def sampled_geometry(
     is_defined = np.isfinite(directions[..., 0])
     if not is_defined.any():
         raise InputError("the calibration has no ray for any pixel of its picture")
-    directions = _continued(directions, is_defined)
     max_angle = float(np.arccos(np.clip(-directions[is_defined][:, 2], -1, 1)).max())
     (focal_x, skew, centre_x), (_, focal_y, centre_y) = calibration.camera_matrix[:2]
     return CalibratedGeometry(
@@ -62,37 +60,6 @@ def _rays(calibration: CalibratedPicture, pixels: Array) -> Array:
     """Returns the directions of pixels (..., 2) in the camera's axes (x right, y up, z backward); NaN for none."""
     directions, _ = calibration.ray(pixels.reshape(-1, 2))
     return (directions * (1, -1, -1)).reshape(*pixels.shape[:-1], 3)
-
-
-def _continued(directions: Array, is_defined: np.ndarray) -> Array:
-    """Returns unit vectors everywhere: extrapolated linearly near the defined ones, and of the nearest node beyond."""
-    continued, known = directions.copy(), is_defined.copy()
-    for _ in range(_EXTRAPOLATED_CELLS):
-        total, count = np.zeros_like(continued), np.zeros(known.shape)
-        for axis in (0, 1):
-            for step in (1, -1):
-                near, far = _shifted(continued, step, axis), _shifted(continued, 2 * step, axis)
-                is_near, is_far = _shifted(known, step, axis), _shifted(known, 2 * step, axis)
-                both = is_near & is_far & ~known
-                total[both] += 2 * near[both] - far[both]
-                count[both] += 1
-        found = count > 0
-        continued[found] = total[found] / count[found][:, None]
-        known |= found
-    if not known.all():
-        nearest = distance_transform_edt(~known, return_distances=False, return_indices=True)
-        continued = continued[tuple(nearest)]
-    unit: Array = continued / np.linalg.norm(continued, axis=-1, keepdims=True)
-    return unit
-
-
-def _shifted(values: np.ndarray, step: int, axis: int) -> np.ndarray:
-    """Returns values[i + step] along an axis; 0 or False beyond the ends."""
-    result = np.roll(values, -step, axis)
-    beyond = [slice(None)] * values.ndim
-    beyond[axis] = slice(-step, None) if step > 0 else slice(None, -step)
-    result[tuple(beyond)] = 0
-    return result
 
 
 def defined_mask(calibration: CalibratedPicture) -> np.ndarray | None:
