@@ -72,7 +72,7 @@ def dataset(
     loaded = Recipe.load(recipe)
     if count is not None:
         loaded = dataclasses.replace(loaded, count=count)
-    if written := farm_files(farm, _work(recipe, output, count, device)):
+    if written := farm_files(farm, work_of_dataset(recipe, output, count, device)):
         check_targets(written, outside=output)
         write_farm_files(written, quiet or as_json)
         if as_json:
@@ -96,7 +96,7 @@ def dataset(
         typer.echo(f"{output}: part {part} of {counted(loaded.count, 'picture')} is done")
 
 
-def _work(recipe: Path, folder: Path, count: int | None, device: str) -> FarmWork:
+def work_of_dataset(recipe: Path, folder: Path, count: int | None, device: str) -> FarmWork:
     """Returns the commands of a data set on a render farm."""
     from ..job.farm_files import FarmPath, FarmWork
 

@@ -91,5 +91,6 @@ def check_single(part: str | None, scheduler: str | None, workers: int | None, i
     """Returns True if this process does the work alone. Raises InputError for options of several processes then."""
     is_single = is_here or part is not None
     if is_single and (scheduler is not None or workers is not None):
-        raise InputError("--here and --part are for one process; --scheduler and --workers exclude them")
+        option = "--here" if is_here else "--part"
+        raise InputError(f"{option} is for one process; --scheduler and --workers exclude it")
     return is_single

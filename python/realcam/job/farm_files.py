@@ -81,7 +81,7 @@ def openjd_template(work: FarmWork, tasks: int) -> str:
 
     def texts(words: Sequence[str | FarmPath]) -> list[str]:
         parameters.update({word.name: word for word in words if isinstance(word, FarmPath)})
-        return [f"{{{{Param.{word.name}}}}}" if isinstance(word, FarmPath) else word for word in words]
+        return [f"{{{{Param.{word.name}}}}}" if isinstance(word, FarmPath) else _literal(word) for word in words]
 
     def step(name: str, arguments: list[str], **more: object) -> dict[str, object]:
         return {"name": name, **more, "script": {"actions": {"onRun": {"command": "realcam", "args": arguments}}}}
@@ -106,19 +106,23 @@ def openjd_template(work: FarmWork, tasks: int) -> str:
 
 def _definition(parameter: FarmPath) -> dict[str, str]:
     """Returns the definition of a path parameter. Raises InputError for a path that the format cannot express."""
-    path = str(parameter.path.absolute())
-    if "{{" in path or "}}" in path or not path.isprintable():
-        raise InputError(
-            f"{path!a:.100}: a path for Open Job Description must not have double braces or control characters; "
-            "choose another one"
-        )
     return {
         "name": parameter.name,
         "type": "PATH",
         "objectType": parameter.kind,
         "dataFlow": parameter.flow,
-        "default": path,
+        "default": _literal(str(parameter.path.absolute())),
     }
+
+
+def _literal(text: str) -> str:
+    """Returns a text of a template. Raises InputError for one that the format cannot express."""
+    if "{{" in text or "}}" in text or not text.isprintable():
+        raise InputError(
+            f"{text!a:.100}: a text for Open Job Description must not have double braces or control characters; "
+            "choose another one"
+        )
+    return text
 
 
 def _job_name(folder: Path) -> str:
