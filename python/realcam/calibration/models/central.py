@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..arrays import Array, Integers
+from ..arrays import Array, Booleans, Integers
 from ..status import PointStatus
 from .distortion import BrownConrady, Distortion
 from .projections import Projection
@@ -85,7 +85,7 @@ class CentralModel:
         across = points[inside, :2] / np.where(rho > 0, rho, 1)[:, None]
         plane = across * self.projection.distance(rho, z)[:, None]
         distorted = self.distortion.distorted_before_fold(plane, self.projection.largest)
-        is_single = ~np.isnan(distorted).any(axis=1)
+        is_single: Booleans = ~np.isnan(distorted[:, 0])
         mapped, is_in_front = self._pixels(distorted[is_single])
         is_single[is_single] = is_in_front
         pixels[inside[is_single]] = mapped[is_in_front]
