@@ -138,5 +138,6 @@ def _engine(target: DatasetFolder, device: str) -> Engine:
 def _engine_of(device: str) -> Engine:
     """Returns the engine of this process on a device."""
     triangle = Scene.from_arrays([[0, 0, -1], [1, 0, -1], [0, 1, -1]], [[0, 1, 2]], materials=[Material()])
+    triangle = triangle.with_environment(1.0)
     camera = Camera(Lens.load("tessar-50mm"), film=Film(36, 24, (2, 2)))
     return Engine.of(Session(triangle, camera, spp=1, effects=(), device=device))
