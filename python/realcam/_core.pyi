@@ -59,6 +59,11 @@ def _record_inputs(is_on: bool) -> None:
     Internal. Starts (True) or ends (False) recording which files are read.
     """
 
+def _record_input(path: bytes) -> None:
+    """
+    Internal. Records that a file is read, see _record_inputs.
+    """
+
 def _check_no_input(output: bytes) -> None:
     """
     Internal. Raises an error if the output file is one of the recorded input files.

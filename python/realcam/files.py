@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ._core import ImageFileError, InputError, _check_no_input
+from ._core import ImageFileError, InputError, _check_no_input, _record_input
 
 
 def system_name(path: str | os.PathLike[str]) -> bytes:
@@ -18,6 +18,11 @@ def system_name(path: str | os.PathLike[str]) -> bytes:
     if b"\0" in name:
         raise InputError("a file name cannot hold a null character")
     return name
+
+
+def record_input(path: str | os.PathLike[str]) -> None:
+    """Records a file that a command reads in Python, so that check_target refuses it as an output."""
+    _record_input(system_name(path))
 
 
 def check_target(path: str | os.PathLike[str], suffixes: Sequence[str] = ()) -> Path:

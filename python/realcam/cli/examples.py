@@ -84,6 +84,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "dataset": (
         "realcam dataset recipe.toml -o pictures",
         "realcam dataset recipe.toml -o pictures --count 1000 --workers 8",
+        "realcam dataset recipe.toml -o pictures --sbatch night.sbatch --tasks 100",
     ),
     "view": (
         "realcam view demo",

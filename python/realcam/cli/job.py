@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import functools
 import logging
 import os
-import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -23,6 +21,16 @@ from . import options
 from .completions import completion_of
 from .grouped_options import grouped
 from .shot_options import load_shot, shot_options
+from .work_options import (
+    FarmOptions,
+    PartText,
+    Scheduler,
+    Threads,
+    check_single,
+    farm_files,
+    part_of,
+    write_farm_files,
+)
 
 if TYPE_CHECKING:
     from ..job import Job
@@ -30,8 +38,6 @@ if TYPE_CHECKING:
 app = typer.Typer(help="Render pictures on many machines, in a folder that all of them share.", no_args_is_help=True)
 
 Folder = Annotated[Path, typer.Argument(help="Folder of the job, created by `realcam job make`", metavar="FOLDER")]
-Threads = Annotated[int, typer.Option(metavar="N", help="Threads of each process; 0: all cores", min=0, max=4096)]
-
 
 ShotOptions = shot_options("ShotOptions", without=("threads",))  # the number of threads is set for each process
 
@@ -46,6 +52,7 @@ def make(
         Path, typer.Option("--output", "-o", metavar="FOLDER", help="Folder of the job; it must not exist yet")
     ],
     changes: ShotOptions,  # type: ignore[valid-type]
+    farm: FarmOptions,
     device: Annotated[
         str,
         typer.Option(
@@ -67,19 +74,6 @@ def make(
             help="Size of a unit of work, 128 or 128x64, in steps of 32 [about a second on one core]",
         ),
     ] = None,
-    sbatch: Annotated[
-        Path | None, typer.Option("--sbatch", metavar="FILE", help="Also write a script for Slurm's sbatch")
-    ] = None,
-    qsub: Annotated[
-        Path | None, typer.Option("--qsub", metavar="FILE", help="Also write a script for the qsub of PBS")
-    ] = None,
-    openjd: Annotated[
-        Path | None,
-        typer.Option("--openjd", metavar="FILE", help="Also write a template of Open Job Description, .json"),
-    ] = None,
-    tasks: Annotated[
-        int, typer.Option("--tasks", metavar="N", help="Processes that these files start", min=1, max=100000)
-    ] = 8,
     quiet: options.Quiet = False,
 ) -> None:
     """Create the folder of a job from shots.
@@ -88,20 +82,12 @@ def make(
     """
     from .. import files
     from ..job import Job
-    from ..job.farm_files import array_script, openjd_template
+    from ..job.farm_files import work_of_job
     from ..job.making import check_is_new
 
     check_is_new(output)
     size, numbers = _tile(tile), None if frames is None else options.frame_numbers(frames)
-    scripts: list[tuple[Path | None, str, Callable[[Path, int], str]]] = [
-        (sbatch, "--sbatch", functools.partial(array_script, "slurm")),
-        (qsub, "--qsub", functools.partial(array_script, "pbs")),
-        (openjd, "--openjd", openjd_template),
-    ]
-    requested = [(path, option, script) for path, option, script in scripts if path is not None]
-    if len(files.check_targets([path for path, _, _ in requested])) < len(requested):
-        raise InputError(f"expected one file each for {' and '.join(option for _, option, _ in requested)}")
-    written = {path: os.fsencode(script(output, tasks)) for path, _, script in requested}
+    written = farm_files(farm, work_of_job(output))
     named = _named_shots(shots, changes, device)
     files.check_targets(written)
     if numbers is not None:
@@ -115,29 +101,20 @@ def make(
         made = job.status()
         units = "units as the noise requires them" if made.is_adaptive else counted(made.units_known, "unit")
         typer.echo(f"{output}: {counted(made.shots, 'picture')}, {units}")
-    for path, content in written.items():
-        files.write_whole(path, content)
-        options.say_written(path, quiet)
+    write_farm_files(written, quiet)
 
 
 @app.command()
 def work(
     folder: Folder,
-    part: Annotated[
-        str | None, typer.Option("--part", metavar="K/N", help="Render the K-th of N parts, in this process: 3/8")
-    ] = None,
+    part: PartText = None,
     workers: Annotated[
         int | None,
         typer.Option("--workers", metavar="N", help="Number of processes [one for each 4 cores]", min=1, max=10000),
     ] = None,
     threads: Threads = 0,
     here: Annotated[bool, typer.Option("--here", help="Render in this process alone, without Dask")] = False,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            "--scheduler", metavar="ADDRESS", help="Address of a Dask scheduler: tcp://head:8786, or its .json file"
-        ),
-    ] = None,
+    scheduler: Scheduler = None,
     device: Annotated[
         str | None,
         typer.Option(
@@ -156,13 +133,11 @@ def work(
     from ..job import Job
     from ..job.clusters import dask_executor, has_dask
 
-    is_single = here or part is not None
-    if is_single and (scheduler is not None or workers is not None):
-        raise InputError("--here and --part are for one process; --scheduler and --workers exclude them")
+    is_single = check_single(part, scheduler, workers, here)
     logging.disable(logging.CRITICAL)  # Dask logs every closed connection; the job reports the errors that matter
     if device is not None and not is_single:
         raise InputError("--device is for one process; use it together with --here")
-    numbers, job = _part(part), Job.load(folder)
+    numbers, job = part_of(part), Job.load(folder)
     with progress_bar(f"{folder}", is_shown=not quiet) as bar:
         if is_single or not (has_dask() or scheduler or workers):
             job.work(part=numbers, threads=threads, device=device, progress=bar)
@@ -289,16 +264,6 @@ def _developed(job: Job, device: str | None, bar: Callable[[float], bool]) -> It
     for done, name in enumerate(job.names):
         bar(done / len(job.names))
         yield job.image(name, device=device).developed(tone=job.tone(name))
-
-
-def _part(text: str | None) -> tuple[int, int] | None:
-    """Converts "K/N". Raises InputError."""
-    if text is None:
-        return None
-    found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
-    if not found or not 1 <= int(found[1]) <= int(found[2]):
-        raise InputError(f'--part: "{text:.40}": expected K/N, 1/8 to 8/8')
-    return int(found[1]), int(found[2])
 
 
 def _tile(text: str | None) -> tuple[int, int] | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ import numpy as np
 
 from .._core import InputError, RealcamError, RenderSettings, Sensor, _did_you_mean, _read_toml
 from ..calibration import Calibration
+from ..files import record_input
 from .calibrated import calibrations_in
 
 MOVES_FOR_S = 1.0  # duration of all motion in a scene, in seconds; every exposure and next picture must lie within it
@@ -156,6 +157,7 @@ class Recipe:
     def load(cls, path: str | os.PathLike[str]) -> Recipe:
         """Reads a recipe. Paths in it are relative to its folder. Raises InputError naming file, line and key."""
         name = os.fspath(path)
+        record_input(path)
         try:
             text = Path(path).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
@@ -166,7 +168,11 @@ class Recipe:
         for key in values:
             if key not in _KINDS:
                 raise InputError(f'{name}:{lines[key]}: unknown key "{key:.40}"{_did_you_mean(key, list(_KINDS))}')
-        values = {key: _located(Path(path).parent, key, value) for key, value in values.items()}
+        # Absolute, because the processes of an executor may have another current folder.
+        folder = Path(path).parent.absolute()
+        values = {key: _located(folder, key, value) for key, value in values.items()}
+        for file in _paths_in(list(values.values())):
+            record_input(file)
         cameras = {key: values[key] for key in _CAMERA_KEYS if key in values}
         for key, value in (cameras | values).items():
             try:
@@ -200,6 +206,14 @@ def _located(folder: Path, key: str, value: Any) -> Any:
     if key in ("calibration", "rig") and isinstance(value, str) and value:
         return str(folder / value)
     return beside(value) if key == "sensor" else value
+
+
+def _paths_in(value: Any) -> Iterator[str]:
+    """Yields the absolute paths among the texts of a value."""
+    if isinstance(value, str) and Path(value).is_absolute():
+        yield value
+    for item in value.values() if isinstance(value, Mapping) else value if isinstance(value, list) else ():
+        yield from _paths_in(item)
 
 
 def _converted(kind: str, name: str, value: Any) -> Any:

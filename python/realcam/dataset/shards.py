@@ -7,15 +7,19 @@ import io
 import json
 import os
 import tarfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from .._core import InputError, __version__, one_line
+from ..archive import read_regular
 from ..files import make_folder, write_whole
+from ..job.engine import Engine
+from ..job.folder import from_json
 from .recipe import Recipe
 
 RECIPE_FILE = "recipe.json"
+ENGINE_FILE = "engine.json"
 INDEX_FILE = "dataset.json"
 _PICTURES = ("samples/*", "shard-*.tar")
 
@@ -40,8 +44,10 @@ class DatasetFolder:
         about = {"realcam": __version__, **json.loads(json.dumps(dataclasses.asdict(recipe)))}
         file = folder.path / RECIPE_FILE
         try:
-            previous = json.loads(file.read_bytes()) if file.exists() else None
-            foreign = folder._first_file(RECIPE_FILE, INDEX_FILE, *_PICTURES) if previous is None else None
+            # In this order: another process may be creating the data set, and writes its recipe first.
+            first_file = folder._first_file(INDEX_FILE, *_PICTURES)
+            previous = json.loads(file.read_bytes()) if os.path.lexists(file) else None
+            foreign = first_file if previous is None else None
         except OSError as error:
             raise InputError(f"{error.filename}: {error.strerror}; choose a folder that can be written to") from None
         except ValueError as error:
@@ -59,6 +65,8 @@ class DatasetFolder:
                 f"{folder.path}: the data set was made with {previous['count']} pictures; the count may not be smaller"
             )
         make_folder(folder.path / "samples")
+        if previous["count"] < recipe.count:
+            (folder.path / INDEX_FILE).unlink(missing_ok=True)  # it lists fewer pictures
         write_whole(file, json.dumps(about, indent=1).encode() + b"\n")
         return folder
 
@@ -80,26 +88,17 @@ class DatasetFolder:
         """Numbers of all shards of the recipe, written or not."""
         return range((self.recipe.count + self.recipe.shard_size - 1) // self.recipe.shard_size)
 
-    def missing(self) -> list[int]:
-        """Returns the numbers of samples that are neither in a shard nor finished.
-
-        Unpacks a shard that has become incomplete because the count was increased.
-        """
-        numbers_missing: list[int] = []
+    def missing(self, numbers: range) -> list[int]:
+        """Returns those of the numbers whose samples are neither in a shard nor finished."""
+        # Finished samples are listed first: another process may be moving them to a shard.
+        not_done = set(self.not_done(numbers))
         for shard in self.shards:
-            numbers = self.numbers_of(shard)
-            in_shard = self._samples_in(shard)
-            if 0 < len(in_shard) < len(numbers):  # the count was increased since the shard was written
-                for number, files in in_shard.items():
-                    self.write_sample(number, files)
-                self.shard_path(shard).unlink()
-                in_shard = {}
-            if not in_shard:
-                numbers_missing += self.not_done(numbers)
-        return numbers_missing
+            if not_done.intersection(self.numbers_of(shard)):
+                not_done -= self._numbers_in(shard)
+        return sorted(not_done)
 
     def not_done(self, numbers: Iterable[int]) -> list[int]:
-        """Returns those of the numbers whose samples are not finished. None of them may be in a shard."""
+        """Returns those of the numbers whose samples have no file of their own."""
         done = {path.name for path in (self.path / "samples").iterdir()}
         return [number for number in numbers if self.sample_path(number).name not in done]
 
@@ -110,19 +109,37 @@ class DatasetFolder:
             _add(tar, number, files)
         write_whole(self.sample_path(number), content.getvalue())
 
-    def write_shard(self, shard: int) -> None:
-        """Writes a shard of finished samples and removes their own files. Does nothing if the shard exists."""
-        if self.shard_path(shard).exists():
-            return
+    def write_shards(self) -> bool:
+        """Writes the shards whose samples are all finished. Returns True if all shards are there.
+
+        Several processes may call it at the same time: they write the same bytes.
+        """
+        missing = [shard for shard in self.shards if not self.write_shard(shard)]
+        return not missing
+
+    def write_shard(self, shard: int) -> bool:
+        """Writes a shard if all of its samples are finished, and removes their own files.
+
+        A shard that is there stays, unless the count was increased since it was written. Returns False if samples are
+        missing.
+        """
         numbers = self.numbers_of(shard)
-        content = io.BytesIO()
-        with tarfile.open(fileobj=content, mode="w") as tar:
-            for number in numbers:
-                for files in self._samples_of(self.sample_path(number), [number]).values():
-                    _add(tar, number, files)
-        write_whole(self.shard_path(shard), content.getvalue(), is_durable=True)
-        for number in numbers:
-            self.sample_path(number).unlink(missing_ok=True)
+        in_shard = self._numbers_in(shard)
+        if len(in_shard) < len(numbers):
+            if not in_shard.issuperset(self.not_done(numbers)):
+                return False
+            try:
+                content = self._shard_content(shard)
+            except InputError:
+                if len(self._numbers_in(shard)) < len(numbers):
+                    raise
+                return True  # another process has written the shard, and removed the samples
+            write_whole(self.shard_path(shard), content, is_durable=True)
+        for number in set(numbers).difference(self.not_done(numbers)):
+            path = self.sample_path(number)
+            if len(in_shard) < len(numbers) or self._samples_of(path, [number], wanted=()):
+                path.unlink(missing_ok=True)
+        return True
 
     def write_index(self) -> None:
         """Writes dataset.json: images, annotations and categories in COCO's format."""
@@ -130,7 +147,7 @@ class DatasetFolder:
         annotations: list[dict[str, Any]] = []
         for shard in self.shards:
             path = self.shard_path(shard)
-            for key, files in read_samples(path):
+            for key, files in read_samples(path, wanted=("json",)):
                 label = json.loads(files["json"])
                 size = label["height"], label["width"]
                 name = {"id": int(key), "file_name": f"{key}.png", "shard": path.name}
@@ -144,19 +161,56 @@ class DatasetFolder:
     def _first_file(self, *names: str) -> Path | None:
         return next((path for name in names for path in sorted(self.path.glob(name))), None)
 
-    def _samples_in(self, shard: int) -> dict[int, dict[str, bytes]]:
-        """Returns the samples of a shard by their numbers; none if it does not exist."""
-        path = self.shard_path(shard)
-        return self._samples_of(path, self.numbers_of(shard)) if os.path.lexists(path) else {}
+    def check_engine(self, engine: Engine) -> None:
+        """Records the engine of the first picture. Raises InputError if this process has another one."""
+        write_whole(self.path / ENGINE_FILE, json.dumps(dataclasses.asdict(engine)).encode() + b"\n", replaces=False)
+        stored = self.engine()
+        if stored != engine:
+            raise InputError(
+                f"{self.path}: its pictures require {stored}; this process has {engine}, whose pictures would differ"
+            )
 
-    def _samples_of(self, path: Path, numbers: Iterable[int]) -> dict[int, dict[str, bytes]]:
-        """Reads the samples of a tar file, by their numbers.
+    def engine(self) -> Engine | None:
+        """Returns the engine that makes the pictures; None before the first one."""
+        file = self.path / ENGINE_FILE
+        if not os.path.lexists(file):
+            return None
+        try:
+            return from_json(Engine, json.loads(read_regular(file, 1 << 12)))
+        except (ValueError, TypeError, AttributeError) as error:
+            if isinstance(error, InputError) and str(error).startswith(str(file)):
+                raise
+            raise InputError(f"{file}: this is damaged; choose another folder") from None
+
+    def _numbers_in(self, shard: int) -> set[int]:
+        """Returns the numbers of the samples in a shard; none if it does not exist."""
+        path = self.shard_path(shard)
+        return set(self._samples_of(path, self.numbers_of(shard), wanted=())) if os.path.lexists(path) else set()
+
+    def _shard_content(self, shard: int) -> bytes:
+        """Returns the content of a shard of finished samples, some of which may be in it already."""
+        path, numbers = self.shard_path(shard), self.numbers_of(shard)
+        samples = self._samples_of(path, numbers) if os.path.lexists(path) else {}
+        content = io.BytesIO()
+        with tarfile.open(fileobj=content, mode="w") as tar:
+            for number in numbers:
+                if number not in samples:
+                    samples |= self._samples_of(self.sample_path(number), [number])
+                if number not in samples:
+                    raise InputError(f"{self.sample_path(number)}: this is empty; removed, it is made again")
+                _add(tar, number, samples.pop(number))
+        return content.getvalue()
+
+    def _samples_of(
+        self, path: Path, numbers: Iterable[int], wanted: Collection[str] | None = None
+    ) -> dict[int, dict[str, bytes]]:
+        """Reads the samples of a tar file, by their numbers. wanted: see read_samples.
 
         Raises InputError unless it holds only pictures of these numbers with their labels.
         """
         keys = {f"{number:06d}": number for number in numbers}
         samples: dict[int, dict[str, bytes]] = {}
-        for key, files in read_samples(path):
+        for key, files in read_samples(path, wanted):
             if key not in keys or not {"png", "json"} <= files.keys():
                 raise InputError(f"{path}: holds {key!a:.40}, and no picture of this data set; choose another folder")
             samples[keys[key]] = files
@@ -171,22 +225,25 @@ def _add(tar: tarfile.TarFile, number: int, files: Mapping[str, bytes]) -> None:
         tar.addfile(entry, io.BytesIO(content))
 
 
-def read_samples(path: Path) -> Iterator[tuple[str, dict[str, bytes]]]:
-    """Yields the samples of a tar file: key, and files by their suffix after the first dot. Raises InputError."""
+def read_samples(path: Path, wanted: Collection[str] | None = None) -> Iterator[tuple[str, dict[str, bytes]]]:
+    """Yields the samples of a tar file: key, and files by their suffix after the first dot. Raises InputError.
+
+    wanted: suffixes of the files that are read; the contents of others are empty. None: all.
+    """
     key = ""
     files: dict[str, bytes] = {}
     try:
         with tarfile.open(path) as tar:
             for entry in tar:
-                content = tar.extractfile(entry)
-                if content is None:
+                if not entry.isfile():
                     continue
                 entry_key, _, suffix = entry.name.partition(".")
                 if entry_key != key and files:
                     yield key, files
                     files = {}
                 key = entry_key
-                files[suffix] = content.read()
+                content = tar.extractfile(entry) if wanted is None or suffix in wanted else None
+                files[suffix] = content.read() if content else b""
     except (tarfile.TarError, OSError, EOFError) as error:
         raise InputError(one_line(f"{path}: this cannot be read ({error}); removed, it is made again")) from None
     if files:

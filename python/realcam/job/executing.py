@@ -15,7 +15,25 @@ Task = TypeVar("Task", bound=Hashable)
 # executor.
 Outcome = str
 
+Part = tuple[int, int]  # (k, n): the k-th of n parts of the work, k from 1
+
 _TRIES = 3  # attempts at a task whose process is lost
+
+
+def check_part(part: Part | None, executor: concurrent.futures.Executor | None) -> None:
+    """Raises InputError unless a part is valid, and for one process: an executor has the whole work."""
+    if part is None:
+        return
+    if not 1 <= part[0] <= part[1] <= 100000:
+        raise InputError(f"part {part[0]} of {part[1]}: expected a part from 1 to the number of parts")
+    if executor is not None:
+        raise InputError(f"part {part[0]} of {part[1]}: a part is for one process; an executor excludes it")
+
+
+def range_of_part(count: int, part: Part | None) -> range:
+    """Returns the indices of the tasks of a part: contiguous, and each of `count` tasks belongs to one part."""
+    k, n = part or (1, 1)
+    return range(count * (k - 1) // n, count * k // n)
 
 
 def do_all(

@@ -63,11 +63,11 @@ class JobFolder:
             fields = json.loads(content)
             if fields["format"] != FORMAT:
                 raise InputError(f"its format is {fields['format']!r:.20}; this realcam reads {FORMAT}")
-            engine = _from_json(Engine, fields["engine"])
+            engine = from_json(Engine, fields["engine"])
             engine.check_version(str(folder))
-            shots, probes = [_from_json(ShotRecord, entry) for entry in fields["shots"]], dict(fields["probes"])
+            shots, probes = [from_json(ShotRecord, entry) for entry in fields["shots"]], dict(fields["probes"])
             more = {"path": folder, "engine": engine, "shots": shots, "probes": probes}
-            made = _from_json(cls, {"id": fields["id"], "device": fields["device"]}, **more)
+            made = from_json(cls, {"id": fields["id"], "device": fields["device"]}, **more)
             check_names([shot.name for shot in shots])
             for shot in made.shots:
                 shot.check_count()
@@ -181,7 +181,7 @@ class JobFolder:
         if fields is None:
             return None
         counts = arrays.get("counts")
-        round_ = _from_json(Round, fields, counts=counts)
+        round_ = from_json(Round, fields, counts=counts)
         taken = 0 if round_.is_of_layers else sum(before.spp for before in known)
         is_valid = (round_.number, round_.samples) == (len(known), taken) and taken + round_.spp <= MAX_SPP
         if counts is not None:
@@ -236,7 +236,7 @@ _VALID: dict[str, Callable[[Any], bool]] = {
 }
 
 
-def _from_json(kind: type[T], entry: Any, **more: Any) -> T:
+def from_json(kind: type[T], entry: Any, **more: Any) -> T:
     """Makes a dataclass from a JSON object, whose keys must be exactly the fields that are not in `more`.
 
     more: values of the other fields. Raises InputError for other keys and for invalid values.

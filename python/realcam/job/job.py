@@ -13,7 +13,7 @@ from .._core import InputError
 from ..files import remove_leftovers, system_name
 from ..image import Image
 from ..shot import Shot
-from .executing import do_all
+from .executing import Part, check_part, do_all
 from .folder import JobFolder
 from .making import make_folder
 from .status import JobStatus, status_of
@@ -85,7 +85,7 @@ class Job:
         self,
         executor: concurrent.futures.Executor | None = None,
         *,
-        part: tuple[int, int] | None = None,
+        part: Part | None = None,
         threads: int = 0,
         device: str | None = None,
         progress: ProgressCallback | None = None,
@@ -100,8 +100,7 @@ class Job:
         Raises InputError, DeviceError, and ImageFileError, if a disk is full, say: finished units remain, and work()
         continues from there.
         """
-        if part is not None and not (1 <= part[0] <= part[1] <= 100000 and executor is None):
-            raise InputError(f"part {part[0]} of {part[1]}: expected a part from 1 to the number of parts")
+        check_part(part, executor)
         remove_leftovers(self.path)
         for name in self.status().damaged:
             self._folder.discard(name)

@@ -19,7 +19,7 @@ from ..film_part import AccumulatedFilm
 from ..pickling import described, from_description
 from ..session import Session
 from .engine import probe_of
-from .executing import Outcome
+from .executing import Outcome, Part, range_of_part
 from .folder import DamagedFileError, JobFolder
 from .units import Round, Unit
 
@@ -249,7 +249,7 @@ class Worker:
             film.add(round_)
         return film
 
-    def work(self, part: tuple[int, int] | None) -> Iterator[None]:
+    def work(self, part: Part | None) -> Iterator[None]:
         """Renders the missing units, and yields after each.
 
         A part (k, n) is the k-th contiguous n-th of each round, counted over all shots. Units of other parts follow
@@ -260,7 +260,7 @@ class Worker:
         records = self.folder.shots
         order = random.Random(None if part is None else part[0])
         k, n = part or (1, 1)
-        first = len(records) * (k - 1) // n
+        first = range_of_part(len(records), part).start
         indices = [*range(first, len(records)), *range(first)]
         if part is None:
             order.shuffle(indices)

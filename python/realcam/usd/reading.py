@@ -15,12 +15,12 @@ from .cameras import camera_json
 from .dome import Domes
 from .glb import Glb, Json
 from .lights import area_light, is_normalised, punctual_light, radiance_of, scaled, world_area
-from .materials import DEFAULT_COLOUR, Materials, TranslatedMaterial
+from .materials import Materials
 from .meshes import mesh_surface, shape_with_primvars
 from .motion import flat, set_transform
+from .primitives import FaceMaterials, add_mesh
 from .shapes import shape_surface
 from .stage import OpenStage, children_of, open_stage
-from .surface import Surface, triangulated, vertex_arrays
 
 _MAX_NESTED_INSTANCERS = 16
 _WRONG_VALUES = (TypeError, ValueError, IndexError, OverflowError, np.linalg.LinAlgError)
@@ -137,7 +137,7 @@ class Translation:
                 path = UsdLux.RectLight(prim).GetTextureFileAttr().Get(self.opened.time)
                 texture = self._materials.texture(path, "st") if path and path.path else None
             material = self._materials.of_light(prim.GetName(), area.radiance, texture)
-            node["mesh"] = self._add_mesh(prim, area.surface, [(None, material)])
+            node["mesh"] = add_mesh(self.opened, self.glb, prim, area.surface, [(None, material)])
             return
         punctual = punctual_light(self.opened, prim, world)
         if punctual:
@@ -183,13 +183,11 @@ class Translation:
                 surface = shape_with_primvars(self.opened, prim, surface, sorted(names))
             elif shape_surface(prim, self.opened.time) is None and not _is_shape(prim):
                 self.opened.notices.add(prim.GetPath(), f"a {prim.GetTypeName()} is left out")
-        return self._add_mesh(prim, surface, materials) if surface else None
+        return add_mesh(self.opened, self.glb, prim, surface, materials) if surface else None
 
-    def _materials_of(
-        self, prim: Usd.Prim, light: tuple[float, ...] | None
-    ) -> list[tuple[np.ndarray | None, TranslatedMaterial]]:
-        """Returns pairs of face indices of the prim and their material; None: all faces that no other pair lists."""
-        out: list[tuple[np.ndarray | None, TranslatedMaterial]] = []
+    def _materials_of(self, prim: Usd.Prim, light: tuple[float, ...] | None) -> FaceMaterials:
+        """Returns the materials of the prim's faces."""
+        out: FaceMaterials = []
         if prim.IsA(UsdGeom.Mesh):
             for subset in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets():
                 bound = _bound_material(subset.GetPrim())
@@ -197,47 +195,6 @@ class Translation:
                 out.append((indices, self._materials.of_material(bound, light)))
         out.append((None, self._materials.of_material(_bound_material(prim), light)))
         return out
-
-    def _add_mesh(
-        self, prim: Usd.Prim, surface: Surface, materials: list[tuple[np.ndarray | None, TranslatedMaterial]]
-    ) -> int:
-        primitives = []
-        is_left = np.ones(len(surface.counts), bool)
-        for faces, material in materials:
-            keeps = is_left if faces is None else is_left & np.isin(surface.faces, faces)
-            is_left = is_left & ~keeps
-            if keeps.any():
-                primitives.append(self._primitive(prim, surface if keeps.all() else surface.kept(keeps), material))
-        return self.glb.add("meshes", {"name": str(prim.GetPath()), "primitives": primitives})
-
-    def _primitive(self, prim: Usd.Prim, surface: Surface, material: TranslatedMaterial) -> Json:
-        points, values, indices = vertex_arrays(surface, triangulated(surface))
-        attributes = {"POSITION": self.glb.floats(points)}
-        if "normals" in values:
-            attributes["NORMAL"] = self.glb.floats(values["normals"])
-        for i, name in enumerate(material.uv_names):
-            st = values.get(name)
-            if st is None or st.shape[1] < 2:
-                self.opened.notices.add(prim.GetPath(), f"has no texture coordinates {name}, which its material reads")
-                st = np.zeros((len(points), 2))
-            if material.clamps and (st.min() < -1e-4 or st.max() > 1 + 1e-4):
-                self.opened.notices.add(prim.GetPath(), "wrap mode black: the edge of the texture is repeated instead")
-            attributes[f"TEXCOORD_{i}"] = self.glb.floats(np.stack([st[:, 0], 1 - st[:, 1]], axis=-1))
-        colours = self._colours(material, values, len(points))
-        if colours is not None:
-            attributes["COLOR_0"] = self.glb.floats(colours)
-        return {"attributes": attributes, "indices": self.glb.indices(indices.ravel()), "material": material.index}
-
-    def _colours(self, material: TranslatedMaterial, values: dict[str, Any], count: int) -> np.ndarray | None:
-        """Returns vertex colours, (V, 3 or 4); None if there are none."""
-        if not material.colours and not material.opacities:
-            return None
-        rgb = np.ones((count, 3))
-        if material.colours:
-            found = values.get(material.colours)
-            rgb = found if found is not None and found.shape[1] == 3 else rgb * np.array(DEFAULT_COLOUR)
-        alpha = values.get(material.opacities or "")
-        return np.asarray(rgb if alpha is None else np.hstack([rgb, alpha[:, :1]]))
 
     def _add_instances(self, instancer: UsdGeom.PointInstancer, node: int) -> None:
         """Adds the instances of a point instancer as children of its node."""

@@ -94,8 +94,12 @@ _FORMS_OF_TYPES: dict[Any, _Form] = {
     Film: _Form(lambda film: [film.width_mm, film.height_mm, *film.resolution, *film.shift_mm], _film),
     Pose: _Form(lambda pose: [*pose.position_m, *pose.look_at_m, *pose.up], _pose),
 }
-#: Forms of the fields of CameraControls but the lens, by name.
-_FORMS = {name: _FORMS_OF_TYPES[kind] for name, kind in get_type_hints(CameraControls).items() if name != "lens"}
+#: Forms of the fields of CameraControls, by name, but for the lens and the geometry, which is that of the shot.
+_FORMS = {
+    name: _FORMS_OF_TYPES[kind]
+    for name, kind in get_type_hints(CameraControls).items()
+    if name not in ("lens", "geometry")
+}
 # An infinite number, which JSON does not have, is stored as null.
 _FORMS["focus_m"] = _Form(
     lambda focus_m: None if math.isinf(focus_m) else focus_m,

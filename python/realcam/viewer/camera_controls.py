@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from .._core import Camera, Film, InputError, Lens
+from .._core import CalibratedGeometry, Camera, Film, InputError, Lens
 from .pose import Pose
 from .ring_scales import ISO, SHUTTER_S, Ring, aperture_ring, zoom_ring
 
@@ -22,9 +22,12 @@ class Mount(NamedTuple):
     zoom: str | float | None
 
 
-def of_width(film: Film, width: int) -> Film:
-    """Returns the film with a picture `width` pixels wide, whose height follows from the film's size."""
-    return film.replace(resolution=(width, max(1, round(width * film.height_mm / film.width_mm))))
+def of_width(film: Film, width: int, pixel_aspect: float = 1.0) -> Film:
+    """Returns the film with a picture `width` pixels wide, whose height follows from the film's size.
+
+    pixel_aspect: width of a pixel over its height, on the film.
+    """
+    return film.replace(resolution=(width, max(1, round(width * film.height_mm / film.width_mm * pixel_aspect))))
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,7 @@ class CameraControls:
     length in mm between them; None: it does not zoom. f_number: None: wide open; a value below the lens's smallest also
     means wide open, so that the setting is retained while lenses change. focus_m: distance in focus, from the film.
     compensation_ev: exposure compensation in stops, positive for brighter. model: a camera model, as for Camera.
+    geometry: that of a calibration, which keeps its film; None: that of the lens. pixel_aspect: see of_width.
     """
 
     lens: Lens
@@ -50,6 +54,8 @@ class CameraControls:
     shutter_opens_s: float = 0.0
     readout_time_s: float = 0.0
     model: str = "full"
+    geometry: CalibratedGeometry | None = None
+    pixel_aspect: float = 1.0
 
     @classmethod
     def of(cls, camera: Camera, *, is_automatic: bool = False) -> CameraControls:
@@ -63,6 +69,9 @@ class CameraControls:
             if not math.isclose(data.effective_focal_length_mm, position_mm, rel_tol=1e-5):
                 zoom = data.effective_focal_length_mm
             lens = lens.zoomed(position)
+        width, height = camera.film.resolution
+        # The pixels of other shots are squares: the picture's height follows from that of the film.
+        pixel_aspect = camera.film.width_mm / width * height / camera.film.height_mm if camera.geometry else 1.0
         return cls(
             lens=lens.wide_open(),
             film=camera.film,
@@ -76,6 +85,8 @@ class CameraControls:
             shutter_opens_s=camera.shutter_opens_s,
             readout_time_s=camera.readout_time_s,
             model=camera.model,
+            geometry=camera.geometry,
+            pixel_aspect=pixel_aspect,
         )
 
     @cached_property
@@ -112,6 +123,7 @@ class CameraControls:
             model=self.model,
             shutter_opens_s=self.shutter_opens_s,
             readout_time_s=self.readout_time_s,
+            geometry=self.geometry,
         )
 
     def shot_values(self) -> dict[str, Any]:
@@ -136,6 +148,8 @@ class CameraControls:
         for key in ("shutter_opens_s", "readout_time_s"):
             if getattr(self, key) != 0:
                 values[key] = getattr(self, key)
+        if self.geometry is not None:
+            del values["film_shift_mm"]  # follows from the calibration
         return values
 
     @cached_property
@@ -194,9 +208,13 @@ class CameraControls:
         """Lens, film and zoom: the settings that undo and redo restore."""
         return Mount(self.lens, self.film, self.zoom)
 
+    def film_for(self, lens: Lens) -> Film:
+        """Returns the film behind another lens: its own, or that of the calibration."""
+        return self.film if self.geometry is not None else Film.for_lens(lens)
+
     def with_mount(self, mount: Mount) -> CameraControls:
         """Returns the controls with another lens and its film; the picture's width in pixels is retained."""
-        film = of_width(mount.film, self.film.resolution[0])
+        film = of_width(mount.film, self.film.resolution[0], self.pixel_aspect)
         return replace(self, lens=mount.lens, zoom=mount.zoom, film=film)
 
     def with_lens(self, lens: Lens) -> CameraControls:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from .._core import Film, InputError, Lens, LensFileError, Plan, RealcamError, RenderSettings
+from .._core import InputError, Lens, LensFileError, Plan, RealcamError, RenderSettings
 from ..image import Image
 from ..number_text import counted, duration_text
 from ..section.cut import PLANES
@@ -130,14 +130,16 @@ class LensBench:
 
     def set_resolution(self, width: int) -> bool:
         """Sets the width of the picture in pixels; its height follows from the film's size."""
-        return self._apply(lambda: replace(self.controls, film=of_width(self.controls.film, width)), view="picture")
+        controls = self.controls
+        film = of_width(controls.film, width, controls.pixel_aspect)
+        return self._apply(lambda: replace(controls, film=film), view="picture")
 
     def set_film_mm(self, width_mm: float, height_mm: float) -> bool:
         """Sets the film's size; the picture keeps its width in pixels. Can be undone."""
 
         def changed() -> CameraControls:
             film = self.controls.film.replace(width_mm=width_mm, height_mm=height_mm)
-            return replace(self.controls, film=of_width(film, film.resolution[0]))
+            return replace(self.controls, film=of_width(film, film.resolution[0], self.controls.pixel_aspect))
 
         if not self._apply(changed, view="picture"):
             return False
@@ -158,8 +160,8 @@ class LensBench:
     # The lens.
 
     def set_lens(self, lens: Lens) -> bool:
-        """Mounts another lens with its own film."""
-        mount = Mount(lens, Film.for_lens(lens), self.controls.with_lens(lens).zoom)
+        """Mounts another lens with its own film, or with that of the calibration."""
+        mount = Mount(lens, self.controls.film_for(lens), self.controls.with_lens(lens).zoom)
         if not self._apply(lambda: self._fitted(mount)):
             return False
         self._push()

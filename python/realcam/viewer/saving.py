@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +16,14 @@ from .._core import InputError, Lens, RenderSettings, Sensor, lens_names
 from .._core import _shot_keys as shot_keys
 from ..image import Image
 from .camera_controls import CameraControls
-from .shot_source import ShotSource
+from .shot_source import CALIBRATION_FILES, CALIBRATION_KEYS, ShotSource
 
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".exr", ".dng")
 #: Suffixes of the files that a picture, a shot or a lens can be saved as.
 SUFFIXES = {"picture": PICTURE_SUFFIXES, "shot": (".toml",), "lens": (".toml", ".zmx", ".seq", ".json", ".roa")}
-_FILES_OF_A_SHOT = ("scene", "environment", "texture")  # keys with paths relative to the shot file
+# Keys with paths relative to the shot file, of the shot and of its table [calibration].
+_FILES_OF_A_SHOT = ("scene", "environment", "texture", *CALIBRATION_FILES)
+_FILES_OF_A_CALIBRATION = ("file", "vignetting")
 _JPEG_QUALITY = 95
 
 
@@ -72,9 +75,12 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
     """
     check_suffix("shot", path.name)
     shot: Any = tomlkit.parse(source.text)
-    for key in _FILES_OF_A_SHOT:
-        if key in shot:
-            shot[key] = os.path.relpath(source.folder / str(shot[key]), path.absolute().parent)
+    is_table = isinstance(shot.get("calibration"), Mapping)
+    tables = [(shot, _FILES_OF_A_SHOT), (shot["calibration"] if is_table else {}, _FILES_OF_A_CALIBRATION)]
+    for table, keys in tables:
+        for key in keys:
+            if isinstance(table.get(key), str):
+                table[key] = os.path.relpath(source.folder / str(table[key]), path.absolute().parent)
     contents = {}
     values = {**controls.shot_values(), "effects": effects}
     lens = controls.lens
@@ -84,8 +90,9 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
         beside = path.with_name(f"{path.stem}-lens.toml")
         contents[beside], _ = lens_content(lens, beside.name)
         values["lens"] = f"./{beside.name}"
+    described = {*values, *(CALIBRATION_KEYS if controls.geometry is not None else ())}
     for key in ("key", "pose", *(key.name for key in shot_keys() if key.group == "Camera")):
-        if key not in values:
+        if key not in described:
             shot.pop(key, None)  # is described by the lens, has its default, or would override the values
     shot.update(values)
     if RenderSettings(illuminant="D65").with_(effects=effects).illuminant is None:

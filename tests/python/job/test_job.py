@@ -499,7 +499,7 @@ def contents(folder: Path) -> dict[Path, bytes]:
     [
         (("finish", "JOB", "-o", "one.exr"), "the job has 2 pictures; --output must be a folder"),
         (("finish", "JOB", "-o", "x", "--format", "gif"), 'unknown format "gif"'),
-        (("work", "JOB", "--here", "--scheduler", "x"), "--scheduler and --workers exclude them"),
+        (("work", "JOB", "--here", "--scheduler", "x"), "--scheduler and --workers exclude it"),
         (("work", "JOB", "--part", "9/8"), "expected K/N, 1/8 to 8/8"),
         (("work", "JOB", "--device", "cuda:1"), "use it together with --here"),
         (("work", "nowhere"), "nowhere is not the folder of a job: there is no such folder"),

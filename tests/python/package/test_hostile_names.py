@@ -18,8 +18,9 @@ from typing import Any
 import pytest
 import realcam as rc
 import tomllib
+from realcam.cli.dataset import work_of_dataset
 from realcam.drawing.figure_files import figure_bytes
-from realcam.job.farm_files import array_script, openjd_template
+from realcam.job.farm_files import FarmWork, array_script, openjd_template, work_of_job
 from realcam.osl.shader import _heading
 
 TEXTS = [
@@ -98,30 +99,35 @@ def test_lens_files(lens_named: Callable[[str], rc.Lens | None], tmp_path: Path,
             assert (found.title.strip(' "') if suffix == ".zmx" else found.title) == same
 
 
-def test_scripts_of_schedulers(tmp_path: Path) -> None:
+@pytest.mark.parametrize("kind", ["job", "dataset"])
+def test_scripts_of_schedulers(tmp_path: Path, kind: str) -> None:
     script = tmp_path / "job.sh"
     for text in TEXTS:
         folder = tmp_path / text
-        script.write_bytes(array_script("slurm", folder, 3).encode())
+        recipe = tmp_path / f"{text}.toml"
+        work: FarmWork = work_of_job(folder) if kind == "job" else work_of_dataset(recipe, folder, 5, text)
+        paths = [str(path.absolute()) for path in ((folder,) if kind == "job" else (folder, recipe))]
+        script.write_bytes(array_script("slurm", work, 3).encode())
         lines = script.read_bytes().decode().split("\n")
         head = [line for line in lines[1:6] if line.startswith("#")]
         assert len(head) == 5
         assert re.fullmatch(r"#SBATCH --job-name=realcam-[\w.-]*", lines[1], re.ASCII)
-        assert lines[6].startswith("exec realcam ")
+        assert lines[6].startswith(f"exec realcam {kind} ")
         subprocess.run(["bash", "-n", script], check=True)
         words = shlex.split("\n".join(lines[6:]), comments=False)
-        assert words[-1] == str(folder.absolute())
+        assert words[-len(paths) :] == paths
+        if kind == "dataset":
+            assert words[words.index("--device") + 1] == text
         try:
-            template = json.loads(openjd_template(folder, 3))
+            template = json.loads(openjd_template(work, 3))
         except rc.InputError as error:
             assert "\n" not in str(error)
             assert "{{" in text or "}}" in text or not text.isprintable()
             continue
         assert "{{" not in template["name"]
-        assert [p["default"] for p in template["parameterDefinitions"]] == [
-            str(folder.absolute()), str(folder.absolute() / "pictures")
-        ]  # fmt: skip
-        assert all("{{" not in p["default"] and p["default"].isprintable() for p in template["parameterDefinitions"])
+        defaults = [parameter["default"] for parameter in template["parameterDefinitions"]]
+        assert defaults == (paths if kind == "dataset" else [*paths, str(folder.absolute() / "pictures")])
+        assert all("{{" not in path and path.isprintable() for path in defaults)
 
 
 def test_shaders(lens_named: Callable[[str], rc.Lens | None]) -> None:

@@ -253,7 +253,7 @@ def test_files_of_other_programs_stay(tmp_path: Path, name: str, content: bytes 
     made_one = {"png": b"", "json": b"{}"}
     with pytest.raises(rc.InputError, match="choose another folder") as error:
         folder = DatasetFolder.open(tmp_path, SMALL)
-        for number in folder.missing():
+        for number in folder.missing(range(SMALL.count)):
             folder.write_sample(number, made_one)
         folder.write_shard(0)
     assert "\n" not in str(error.value)

@@ -13,6 +13,7 @@ from .calibrated_picture import CalibratedPicture
 
 LARGEST_ROTATION_DEG = 10.0  # of a bundle; beyond it the lens's field does not resemble the calibration's
 _LEAST_LIGHT = 0.02  # of that in the middle of the film, at every pixel that the calibration sees
+_SMALLEST_APERTURE = 64.0  # f-number at which a lens must still light the picture: a camera's rings end there
 _POINTS = 17  # along each side of the picture
 
 
@@ -40,7 +41,8 @@ def chosen_lens(calibration: CalibratedPicture, film: Film, f_number: float | No
     for candidate in candidates:
         if candidate.lacks or candidate.rotation_deg > LARGEST_ROTATION_DEG:
             break
-        if _lights(candidate.lens, film, pixels):
+        smallest = candidate.lens.stopped_down(max(_SMALLEST_APERTURE, candidate.lens.f_number))
+        if _lights(candidate.lens, film, pixels) and _lights(smallest, film, pixels):
             return candidate.lens
     raise InputError(_refusal(calibration, focal_length_mm, f_number, directions, candidates))
 

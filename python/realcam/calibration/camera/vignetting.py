@@ -12,6 +12,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..._core import Camera, InputError
+from ...files import record_input
 from ..arrays import Array
 from ..errors import CalibrationFileError
 from ..files.document import Document
@@ -119,6 +120,7 @@ def _flat_field(path: Path, linear: bool) -> Array:
     """Returns the mean of a picture's colour channels, (H, W), linear."""
     import OpenImageIO as oiio  # slow to load
 
+    record_input(path)
     opened = oiio.ImageInput.open(str(path))
     if opened is None:
         raise CalibrationFileError(f"{path}: cannot be read: {oiio.geterror():.80}".replace("\n", " "))

@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NoReturn
 
+from ...files import record_input
 from ..errors import CalibrationFileError
 from .markup import parsed_xml, parsed_yaml
 
@@ -22,6 +23,7 @@ class Document:
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
+        record_input(path)
         try:
             with self.path.open("rb") as file:
                 self.content = file.read(LARGEST_FILE + 1)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..._core import ImageFileError
+from ...files import record_input
 from ..arrays import Array
 from .markup import Fail
 
@@ -19,6 +20,7 @@ def exr_values(path: Path, channels: int, fail: Fail) -> Array:
     """Returns the first channels of a picture, (H, W, channels) doubles. Calls `fail` with the reason if it cannot."""
     import OpenImageIO as oiio  # slow to load
 
+    record_input(path)
     opened = oiio.ImageInput.open(str(path))
     if opened is None:
         fail(f"cannot be read: {oiio.geterror():.80}".replace("\n", " "))

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..arrays import Array, Integers
+from ..arrays import Array, Booleans, Integers
 from ..status import PointStatus
 from .distortion import BrownConrady, Distortion
 from .projections import Projection
@@ -84,8 +84,9 @@ class CentralModel:
         # On the axis the direction across it is arbitrary, and its distance 0.
         across = points[inside, :2] / np.where(rho > 0, rho, 1)[:, None]
         plane = across * self.projection.distance(rho, z)[:, None]
-        is_single = self.distortion.is_before_fold(plane, self.projection.largest)
-        mapped, is_in_front = self._pixels(self.distortion.distorted(plane[is_single]))
+        distorted = self.distortion.distorted_before_fold(plane, self.projection.largest)
+        is_single: Booleans = ~np.isnan(distorted[:, 0])
+        mapped, is_in_front = self._pixels(distorted[is_single])
         is_single[is_single] = is_in_front
         pixels[inside[is_single]] = mapped[is_in_front]
         status[inside[~is_single]] = PointStatus.BEYOND_FOLD

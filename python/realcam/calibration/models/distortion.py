@@ -25,14 +25,12 @@ class Distortion(Protocol):
     def scale(self) -> float:
         """Magnification at the centre."""
 
-    def is_before_fold(self, points: Array, largest: float) -> Booleans:
-        """True if the map does not fold between the centre and the ideal point, within the distance `largest`."""
-
     def first_fold(self, largest: float) -> float:
         """Returns the smallest distance from the centre at which the map folds; inf if it does not before `largest`."""
 
-    def distorted(self, points: Array) -> Array:
-        """Returns the distorted points of ideal points before the fold."""
+    def distorted_before_fold(self, points: Array, largest: float) -> Array:
+        """Returns the distorted points of ideal points; NaN if the map folds between the centre and the point, within
+        the distance `largest`."""
 
     def ideal(self, points: Array, largest: float) -> Array:
         """Returns the ideal points of distorted points, less than `largest` from the centre; NaN if there is none."""
@@ -80,7 +78,13 @@ class BrownConrady:
             return radial + self._shift_jacobian(points)
         return radial + self._shift_jacobian(points * factor[:, None]) @ radial
 
-    def is_before_fold(self, points: Array, largest: float) -> Booleans:
+    def distorted_before_fold(self, points: Array, largest: float) -> Array:
+        found = np.full(points.shape, np.nan)
+        is_before = self._is_before_fold(points, largest)
+        found[is_before] = self.distorted(points[is_before])
+        return found
+
+    def _is_before_fold(self, points: Array, largest: float) -> Booleans:
         if self.is_radial:
             return np.hypot(points[:, 0], points[:, 1]) < self.radius.first_fold
         return self._folds(largest).is_before(points)
@@ -101,7 +105,7 @@ class BrownConrady:
         found[reached] = plane_inverse(self.distorted, self.jacobian, points[reached], start)
         inside = np.hypot(found[:, 0], found[:, 1]) < limit
         found[~inside] = np.nan
-        found[inside] = np.where(self.is_before_fold(found[inside], largest)[:, None], found[inside], np.nan)
+        found[inside] = np.where(self._is_before_fold(found[inside], largest)[:, None], found[inside], np.nan)
         return found
 
     def _radially_ideal(self, points: Array, largest: float) -> Array:

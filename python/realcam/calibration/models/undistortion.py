@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, Booleans
+from ..arrays import Array
 from .folds import Folds
 from .plane_inverse import plane_inverse
 
 STEP = 1e-30  # of the complex step, whose derivatives have no rounding error
+DIFFERENCE = 1e-7  # of points whose distances from the centre are about 1
 
 
 @dataclass(frozen=True)
@@ -32,11 +33,14 @@ class Undistortion:
     def scale(self) -> float:
         return self.ratio / float(np.sqrt(np.abs(np.linalg.det(self._jacobian(np.zeros((1, 2)))[0]))))
 
-    def is_before_fold(self, points: Array, largest: float) -> Booleans:
-        found = self._distorted(points)
-        before: Booleans = np.logical_and.reduce(np.isfinite(found), axis=1)
-        before[before] = self._folds.is_before(found[before])
-        return before
+    def distorted_before_fold(self, points: Array, largest: float) -> Array:
+        values = points * self.ratio
+        (reached,) = np.nonzero(self._folds.may_reach(values))
+        found = np.full(points.shape, np.nan)
+        found[reached] = plane_inverse(self.function, self._nearly_jacobian, values[reached], values[reached])
+        (solved,) = np.nonzero(np.isfinite(found).all(axis=1))
+        found[solved[~self._folds.is_before(found[solved])]] = np.nan
+        return found
 
     def first_fold(self, largest: float) -> float:
         azimuths = np.linspace(0, 2 * np.pi, 256, endpoint=False)
@@ -47,9 +51,6 @@ class Undistortion:
         ends = np.column_stack([np.cos(azimuths), np.sin(azimuths)])[reached] * limits[reached, None]
         return float(np.hypot(*self.function(ends).T).min()) / self.ratio
 
-    def distorted(self, points: Array) -> Array:
-        return self._distorted(points)
-
     def ideal(self, points: Array, largest: float) -> Array:
         found: Array = self.function(points) / self.ratio
         with np.errstate(invalid="ignore"):
@@ -57,15 +58,15 @@ class Undistortion:
         found[is_hidden] = np.nan
         return found
 
-    def _distorted(self, points: Array) -> Array:
-        values = points * self.ratio
-        (reached,) = np.nonzero(self._folds.may_reach(values))
-        found = np.full(points.shape, np.nan)
-        found[reached] = plane_inverse(self.function, self._jacobian, values[reached], values[reached])
-        return found
-
     def _jacobian(self, points: Array) -> Array:
         columns = [self.function(points + 1j * STEP * axis).imag / STEP for axis in np.eye(2)]
+        return np.stack(columns, axis=2)
+
+    def _nearly_jacobian(self, points: Array) -> Array:
+        """Returns differences in place of derivatives, which are enough for Newton's steps and take a fourth of the
+        time."""
+        at = self.function(points)
+        columns = [(self.function(points + DIFFERENCE * axis) - at) / DIFFERENCE for axis in np.eye(2)]
         return np.stack(columns, axis=2)
 
     @cached_property

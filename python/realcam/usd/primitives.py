@@ -1,0 +1,61 @@
+"""Meshes of the document: a surface with the materials of its faces."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from pxr import Usd
+
+from .glb import Glb, Json
+from .gltf_material import TranslatedMaterial
+from .shading_network import DEFAULT_COLOUR
+from .stage import OpenStage
+from .surface import Surface, triangulated, vertex_arrays
+
+# Pairs of face indices and their material; None: all faces that no other pair lists.
+FaceMaterials = list[tuple[np.ndarray | None, TranslatedMaterial]]
+
+
+def add_mesh(opened: OpenStage, glb: Glb, prim: Usd.Prim, surface: Surface, materials: FaceMaterials) -> int:
+    """Adds a surface as a mesh of the document, with one primitive for each material that is used. Returns its
+    index."""
+    primitives = []
+    is_left = np.ones(len(surface.counts), bool)
+    for faces, material in materials:
+        keeps = is_left if faces is None else is_left & np.isin(surface.faces, faces)
+        is_left = is_left & ~keeps
+        if keeps.any():
+            primitives.append(_primitive(opened, glb, prim, surface if keeps.all() else surface.kept(keeps), material))
+    return glb.add("meshes", {"name": str(prim.GetPath()), "primitives": primitives})
+
+
+def _primitive(opened: OpenStage, glb: Glb, prim: Usd.Prim, surface: Surface, material: TranslatedMaterial) -> Json:
+    points, values, indices = vertex_arrays(surface, triangulated(surface))
+    attributes = {"POSITION": glb.floats(points)}
+    if "normals" in values:
+        attributes["NORMAL"] = glb.floats(values["normals"])
+    for i, name in enumerate(material.uv_names):
+        st = values.get(name)
+        if st is None or st.shape[1] < 2:
+            opened.notices.add(prim.GetPath(), f"has no texture coordinates {name}, which its material reads")
+            st = np.zeros((len(points), 2))
+        if material.clamps and (st.min() < -1e-4 or st.max() > 1 + 1e-4):
+            opened.notices.add(prim.GetPath(), "wrap mode black: the edge of the texture is repeated instead")
+        attributes[f"TEXCOORD_{i}"] = glb.floats(np.stack([st[:, 0], 1 - st[:, 1]], axis=-1))
+    colours = _colours(material, values, len(points))
+    if colours is not None:
+        attributes["COLOR_0"] = glb.floats(colours)
+    return {"attributes": attributes, "indices": glb.indices(indices.ravel()), "material": material.index}
+
+
+def _colours(material: TranslatedMaterial, values: dict[str, Any], count: int) -> np.ndarray | None:
+    """Returns vertex colours, (V, 3 or 4); None if there are none."""
+    if not material.colours and not material.opacities:
+        return None
+    rgb = np.ones((count, 3))
+    if material.colours:
+        found = values.get(material.colours)
+        rgb = found if found is not None and found.shape[1] == 3 else rgb * np.array(DEFAULT_COLOUR)
+    alpha = values.get(material.opacities or "")
+    return np.asarray(rgb if alpha is None else np.hstack([rgb, alpha[:, :1]]))
