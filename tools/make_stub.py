@@ -71,7 +71,8 @@ class _Shot(TypedDict):
     scene: Scene
     camera: Camera
     settings: RenderSettings
-    tone: str
+    tone: str | OcioView
+    exr_color_space: str
     keys: tuple[CameraKey, ...]
     shake: Shake | None
     iso_follows_s: float | None
