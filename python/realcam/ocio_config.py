@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import stat
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
@@ -46,9 +45,7 @@ class _Files(ocio.PyConfigIOProxy):  # type: ignore[misc]
             status = Path(path).stat()
         except OSError:
             return ""
-        if not stat.S_ISREG(status.st_mode):
-            self.problem = self.problem or f"{path}: is not a regular file"
-            return ""
+        # Also for what is no regular file: without a text OpenColorIO opens the file by itself.
         return f"{status.st_ino} {status.st_size} {status.st_mtime_ns}"
 
     def getLutData(self, path: str) -> Any:  # noqa: N802
@@ -61,7 +58,7 @@ class _Files(ocio.PyConfigIOProxy):  # type: ignore[misc]
         except InputError as error:
             self.problem = self.problem or f"{path}: {error}"
         self._left -= len(content)
-        self._last = path, ocio.vector_of_uint8_t(content)
+        self._last = path, ocio.vector_of_uint8_t(content or b"\n")  # OpenColorIO does not return from reading nothing
         return self._last[1]
 
 
@@ -148,7 +145,7 @@ class OcioConfig:
         """Raises errors of OpenColorIO as InputErrors in one line that begins with the configuration's name."""
         try:
             yield
-        except (ocio.Exception, InputError, RuntimeError, MemoryError) as error:
+        except (ocio.Exception, ocio.ExceptionMissingFile, InputError, RuntimeError, MemoryError) as error:
             problem = self._files.problem if self._files else ""
             text = " ".join((problem or str(error) or "there is too little memory for it").split())
             raise InputError(f"{self.name}: {text[:300]}") from None
