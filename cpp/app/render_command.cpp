@@ -325,8 +325,7 @@ private:
                                   ", except from .exr; --no-denoise keeps it"
                             : "the remaining noise stays: " + why_no_denoiser_);
         const Image& for_screen = denoised ? *denoised : image;
-        if (const std::string notice = exposure_notice(for_screen, shot.camera, *view_); !notice.empty())
-            warn(notice);
+        if (const std::string notice = exposure_notice(for_screen, shot.camera, *view_); !notice.empty()) warn(notice);
         write(request.denoises ? for_screen : image, for_screen, shot, request, plan_summary, denoiser_name, files,
               keep_going);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
@@ -342,9 +341,7 @@ private:
                 return image_io::read_image(path, bytes);
             },
             [](const std::string& path, const std::string& layer, const io::ColorConversion& to_rec709,
-               const image_io::WarnOf& warn) {
-                return image_io::read_environment(path, layer, warn, {}, to_rec709);
-            }};
+               const image_io::WarnOf& warn) { return image_io::read_environment(path, layer, warn, {}, to_rec709); }};
         Assembly scene =
             with_memory_for("while reading " + request.scene, [&] { return shot::scene_of(request, readers); });
         inputs_.end();

@@ -32,8 +32,8 @@ using WarnOf = std::function<void(const std::string& message)>;
 /// an EXR or HDR, are converted to Rec. 709; an EXR that declares an environment map (attribute `envmap`) has the
 /// directions of OpenEXR, and may be a cube map. `layer`: name of an EXR's layer; empty: its beauty or only layer.
 /// Negative numbers become 0, with a warning. Throws ImageFileError if the file cannot be read, if negative numbers are
-/// more than a twentieth of the light, or if a value is not finite or beyond 1e20; and Cancelled. `to_rec709`: conversion of
-/// the file's values, in place of what it states of its colours; empty: none.
+/// more than a twentieth of the light, or if a value is not finite or beyond 1e20; and Cancelled. `to_rec709`:
+/// conversion of the file's values, in place of what it states of its colours; empty: none.
 Environment read_environment(const std::string& path, const std::string& layer = {}, const WarnOf& warn = {},
                              const KeepGoing& keep_going = {}, const io::ColorConversion& to_rec709 = {});
 

@@ -111,9 +111,9 @@ std::optional<Matrix> rec709_from(const Chromaticities& chromaticities) {
         throw Error("has degenerate chromaticities of red, green, blue and white");
     const auto white_of = [](const Matrix& m) { return sensor_detail::applied(m, {1, 1, 1}); };
     return sensor_detail::product(
-        rec709_from_xyz,
-        sensor_detail::product(sensor_detail::adaptation(white_of(xyz_from_file), white_of(xyz_from(kRec709Chromaticities))),
-                               xyz_from_file));
+        rec709_from_xyz, sensor_detail::product(sensor_detail::adaptation(white_of(xyz_from_file),
+                                                                          white_of(xyz_from(kRec709Chromaticities))),
+                                                xyz_from_file));
 }
 
 void apply_matrix(const Matrix& matrix, float* pixels, std::size_t count, std::size_t stride) {

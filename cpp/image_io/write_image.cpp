@@ -139,7 +139,8 @@ LayerChannels channels_of(Layer layer) {
         case Layer::albedo: return {{"Albedo.R", "Albedo.G", "Albedo.B"}, "0 to 1, linear"};
         case Layer::circle_of_confusion_mm: return {{"CircleOfConfusion"}, "mm on the film, diameter"};
         case Layer::sample_count: return {{"SampleCount"}, "samples of the pixel"};
-        case Layer::variance: return {{"Variance.R", "Variance.G", "Variance.B"}, "(lux seconds)^2, of R, G, B in linear Rec. 709"};
+        case Layer::variance:
+            return {{"Variance.R", "Variance.G", "Variance.B"}, "(lux seconds)^2, of R, G, B in linear Rec. 709"};
         case Layer::depth_middle: return {{"DepthMiddle.Z"}, "metres from the film along the axis, middle ray"};
         case Layer::normal_middle:
             return {{"NormalMiddle.X", "NormalMiddle.Y", "NormalMiddle.Z"}, "scene axes, middle ray"};
@@ -185,8 +186,8 @@ void add_layers(const PictureView& picture, ExrColorSpace color_space, EncodedPi
         exr.attributes.emplace_back("realcam:materials", json_of(picture.material_names));
 }
 
-/// True if a layer has colours, which are converted to the colour space of the file. A variance is not one: converted, it
-/// would need the covariances of the channels.
+/// True if a layer has colours, which are converted to the colour space of the file. A variance is not one: converted,
+/// it would need the covariances of the channels.
 bool has_colors(Layer layer) {
     return layer == Layer::albedo || layer == Layer::traced_light || layer == Layer::dual_pixel_left ||
            layer == Layer::dual_pixel_right;

@@ -162,8 +162,8 @@ PictureReaders with_color_spaces(const OcioRequest& ocio, PictureReaders readers
     // Returns a function from the path of a picture to the conversion. Pictures in memory have no rule.
     const auto conversions = [config = opened(ocio)](const std::string& color_space) {
         const bool has_rules = color_space == kFileRules;
-        return [=, stated = has_rules ? io::ColorConversion() : config->to_rec709(color_space, "")](
-                   const std::string& path) {
+        return [=, stated = has_rules ? io::ColorConversion()
+                                      : config->to_rec709(color_space, "")](const std::string& path) {
             return has_rules && !path.empty() ? config->to_rec709(color_space, path) : stated;
         };
     };

@@ -226,6 +226,7 @@ __all__ = [
     "Meridian",
     "Mirror",
     "NothingToPlan",
+    "OcioView",
     "Operand",
     "OpticalFlow",
     "Optimisation",

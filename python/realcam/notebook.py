@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._core import Plan
-from .ocio import OcioView, develop
 from .number_text import number_text, percent_text
+from .ocio import OcioView, develop
 
 LONGEST_SIDE_PX = 1200
 

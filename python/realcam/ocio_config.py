@@ -45,7 +45,7 @@ class _Files(ocio.PyConfigIOProxy):  # type: ignore[misc]
             status = Path(path).stat()
         except OSError:
             return ""
-        # Also for what is no regular file: without a text OpenColorIO opens the file by itself.
+        # Pipes and devices get a text, too: without one OpenColorIO would open them by itself.
         return f"{status.st_ino} {status.st_size} {status.st_mtime_ns}"
 
     def getLutData(self, path: str) -> Any:  # noqa: N802
@@ -186,8 +186,9 @@ def _check_size(config: Any) -> None:
     spaces = [space.getName() for space in config.getColorSpaces(ocio.SEARCH_REFERENCE_SPACE_ALL, ocio.COLORSPACE_ALL)]
     sizes_of_all = {name: size_of_space(name) for name in [*spaces, *config.getNamedTransformNames()]}
     for view in config.getViewTransforms():
-        sides = view.getTransform(ocio.VIEWTRANSFORM_DIR_TO_REFERENCE), view.getTransform(
-            ocio.VIEWTRANSFORM_DIR_FROM_REFERENCE
+        sides = (
+            view.getTransform(ocio.VIEWTRANSFORM_DIR_TO_REFERENCE),
+            view.getTransform(ocio.VIEWTRANSFORM_DIR_FROM_REFERENCE),
         )
         sizes_of_all[view.getName()] = sum(map(size_of, sides))
     for look in config.getLooks():

@@ -141,12 +141,14 @@ class RawImage(PickledByFields):
         result: np.ndarray = balanced @ film_from_balanced.T
         return result
 
-    def developed(self, tone: str | OcioView = "linear", iso: float | None = None, demosaic: str = "menon") -> np.ndarray:
-        """Returns the picture as 8-bit sRGB values, (H, W, 3) uint8, like Image.developed.
+    def developed(
+        self, tone: str | OcioView = "linear", iso: float | None = None, demosaic: str = "menon"
+    ) -> np.ndarray:
+        """Returns the picture as 8-bit display values, (H, W, 3) uint8, like Image.developed.
 
         tone: "linear" (clipped at white, half a stop below saturation) or "film", whose shoulder expects brighter
-        highlights than a sensor records; or a view of OpenColorIO. iso: None is that of the exposure; another value scales the brightness.
-        demosaic: as for exposure(). Raises InputError.
+        highlights than a sensor records; or a view of OpenColorIO. iso: None is that of the exposure; another value
+        scales the brightness. demosaic: as for exposure(). Raises InputError.
         """
         return develop(self.exposure(demosaic), self.iso if iso is None else iso, tone)
 

@@ -293,7 +293,8 @@ Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std
         OwnedSession::shared(device).use([&](const auto& session) { meter(shot, request, *session, report); });
     }
     py::dict fields("scene"_a = shot.scene, "camera"_a = shot.camera, "settings"_a = request.settings,
-                    "tone"_a = tone_from(*view), "exr_color_space"_a = name_among(kExrColorSpaces, request.exr_color_space),
+                    "tone"_a = tone_from(*view),
+                    "exr_color_space"_a = name_among(kExrColorSpaces, request.exr_color_space),
                     "keys"_a = py::tuple(py::cast(request.keys)),
                     "shake"_a = request.shake.is_still() ? std::nullopt : std::optional(request.shake),
                     "iso_follows_s"_a = request.iso_follows_s);

@@ -81,15 +81,15 @@ public:
 
     std::shared_ptr<const View> view(const std::string& display, const std::string& view) const override {
         return call_python([&] {
-            return std::make_shared<PythonView>(py::module_::import("realcam.ocio").attr("OcioView")(
-                text_from(name_), text_from(display), text_from(view)));
+            return std::make_shared<PythonView>(
+                py::module_::import("realcam.ocio")
+                    .attr("OcioView")(text_from(name_), text_from(display), text_from(view)));
         });
     }
 
     io::ColorConversion to_rec709(const std::string& color_space, const std::string& path) const override {
         return call_python([&] {
-            const auto convert =
-                shared(config_->attr("conversion_to_rec709")(text_from(color_space), text_from(path)));
+            const auto convert = shared(config_->attr("conversion_to_rec709")(text_from(color_space), text_from(path)));
             return [convert](std::span<float> rgb) {
                 call_python([&] {
                     const std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(rgb.size() / 3), 3};

@@ -69,7 +69,6 @@ inline constexpr NamedValues<PupilSampling, 4> kPupilSamplings = {{
 inline constexpr NamedValues<LightTracing, 3> kLightTracings = {
     {{"weighted", LightTracing::weighted}, {"off", LightTracing::off}, {"alone", LightTracing::alone}}};
 
-
 /// Colour space of the colours in OpenEXR files. Its values are linear.
 enum class ExrColorSpace {
     rec709,  ///< primaries and white of ITU-R BT.709

@@ -40,8 +40,8 @@ class StoredShot:
 
 
 def tone_text(tone: str | OcioView) -> str:
-    """Returns a tone curve or a view as text. Raises InputError for a configuration that is a file: a job reads no files
-    outside of its folder."""
+    """Returns a tone curve or a view as text. Raises InputError for a configuration that is a file, because a job reads
+    no files outside of its folder."""
     if not isinstance(tone, OcioView):
         return tone
     if not tone.config.startswith(BUILT_IN):

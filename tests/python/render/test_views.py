@@ -71,9 +71,7 @@ def processed(pixels: np.ndarray, iso: float, display: str, view: str, name: str
     height, width = pixels.shape[:2]
     cpu.apply(
         ocio.PackedImageDesc(linear, width, height, ocio.CHANNEL_ORDERING_RGB),
-        ocio.PackedImageDesc(
-            codes, width, height, ocio.CHANNEL_ORDERING_RGB, ocio.BIT_DEPTH_UINT8, 1, 3, 3 * width
-        ),
+        ocio.PackedImageDesc(codes, width, height, ocio.CHANNEL_ORDERING_RGB, ocio.BIT_DEPTH_UINT8, 1, 3, 3 * width),
     )
     return codes
 
@@ -122,8 +120,10 @@ def test_files_say_by_which_view_they_were_developed(image: rc.Image, tmp_path: 
         image.save(tmp_path / "a.png", view)
         picture = oiio.ImageBuf(str(tmp_path / "a.png"))
         np.testing.assert_array_equal(picture.get_pixels(oiio.UINT8), image.developed(view))
-        entries = {f"realcam:{name}": picture.spec().get_string_attribute(f"realcam:{name}") for name in
-                   ("ocio", "display", "view")}
+        entries = {
+            f"realcam:{name}": picture.spec().get_string_attribute(f"realcam:{name}")
+            for name in ("ocio", "display", "view")
+        }
         assert entries == view.metadata()
         assert not picture.spec().get_string_attribute("realcam:tone")
         assert (b"sRGB" in (tmp_path / "a.png").read_bytes()[:200]) == is_srgb
@@ -170,9 +170,7 @@ def test_shot_files_options_and_keywords_have_views(tmp_path: Path) -> None:
     for name in ("python.png", "file.png", "option.png"):
         assert_same_codes(oiio.ImageBuf(str(tmp_path / name)).get_pixels(oiio.UINT8), expected)
     other = rc.photograph(path, display="Rec.1886 Rec.709 - Display", view="Un-tone-mapped")
-    assert_same_codes(
-        other.developed(), processed(other.pixels, 100, "Rec.1886 Rec.709 - Display", "Un-tone-mapped")
-    )
+    assert_same_codes(other.developed(), processed(other.pixels, 100, "Rec.1886 Rec.709 - Display", "Un-tone-mapped"))
     assert rc.photograph(path, tone="linear").tone == "linear"  # an option replaces the file's view
 
 
@@ -226,9 +224,7 @@ def test_exr_in_acescg(image: rc.Image, tmp_path: Path) -> None:
         # Six decimals of the matrix.
         np.testing.assert_allclose(picture.get_pixels(oiio.FLOAT)[..., :3], expected, atol=2e-6 * image.pixels.max())
         # Rounding to float32, twice.
-        np.testing.assert_allclose(
-            rc.read_environment(path), image.pixels, rtol=1e-5, atol=1e-6 * image.pixels.max()
-        )
+        np.testing.assert_allclose(rc.read_environment(path), image.pixels, rtol=1e-5, atol=1e-6 * image.pixels.max())
     colors = image.pixels.reshape(-1, 3).copy()
     config = ocio.Config.CreateFromFile(STUDIO)
     config.getProcessor("Linear Rec.709 (sRGB)", "ACEScg").getDefaultCPUProcessor().applyRGB(colors)
@@ -382,8 +378,8 @@ def test_the_executable_says_who_has_views(tmp_path: Path) -> None:
         text=True,
     )
     assert done.returncode == 0, done.stderr
-    chromaticities = oiio.ImageBuf(str(tmp_path / "a.exr")).spec().getattribute(
-        "chromaticities", oiio.TypeDesc("float[8]")
+    chromaticities = (
+        oiio.ImageBuf(str(tmp_path / "a.exr")).spec().getattribute("chromaticities", oiio.TypeDesc("float[8]"))
     )
     np.testing.assert_allclose(chromaticities[:2], (0.713, 0.293), rtol=1e-6)
 
