@@ -263,7 +263,8 @@ std::vector<ShotKey> picture_keys() {
          "It is the RMS error of the tile's pixels as a fraction of their mean, or of a hundredth of white if that is "
          "larger."),
         setting("noise_codes", "--noise-codes", "CODES", number, kNumber,
-         "The same noise goal in 8-bit codes of the developed picture", "", {"noise", "spp"},
+         "The same noise goal in 8-bit codes of the picture with the linear tone curve, under every view", "",
+         {"noise", "spp"},
          set_noise<set_number<&P::noise, &N::noise_codes>>, get_value<&P::noise, &N::noise_codes>),
         setting("seconds", "--seconds", "SECONDS", number, kNumber,
          "Time limit for taking samples, unless spp is a number", "", {},

@@ -142,13 +142,18 @@ class OcioConfig:
 
     @contextmanager
     def _errors_named(self) -> Iterator[None]:
-        """Raises errors of OpenColorIO as InputErrors in one line that begins with the configuration's name."""
+        """Raises errors of OpenColorIO as InputErrors in one line that begins with the configuration's name. Its remarks
+        are not printed, because they quote a stranger's text as it is."""
+        level = ocio.GetLoggingLevel()
+        ocio.SetLoggingLevel(ocio.LOGGING_LEVEL_NONE)
         try:
             yield
         except (ocio.Exception, ocio.ExceptionMissingFile, InputError, RuntimeError, MemoryError) as error:
             problem = self._files.problem if self._files else ""
             text = " ".join((problem or str(error) or "there is too little memory for it").split())
             raise InputError(f"{self.name}: {text[:300]}") from None
+        finally:
+            ocio.SetLoggingLevel(level)
 
 
 def _listed(names: Any) -> str:
