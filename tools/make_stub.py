@@ -53,6 +53,7 @@ from typing_extensions import CapsuleType, Self, TypeVar, Unpack
 
 from .derivatives import Gradient, Variable
 from .image import Image
+from .ocio import OcioView
 from .raw_image import RawImage
 from .vision.lens_calibration import LensCalibration
 
@@ -71,7 +72,8 @@ class _Shot(TypedDict):
     scene: Scene
     camera: Camera
     settings: RenderSettings
-    tone: str
+    tone: str | OcioView
+    exr_color_space: str
     keys: tuple[CameraKey, ...]
     shake: Shake | None
     iso_follows_s: float | None

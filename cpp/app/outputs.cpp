@@ -72,7 +72,13 @@ std::string settings_digest(const shot::ShotRequest& request, const Camera& came
          << ' ' << light.z << ' ' << request.environment_change.scale << ' ' << request.environment_change.rotation_deg
          << ' ' << static_cast<int>(request.tone) << ' ' << request.denoises << ' ' << request.meters_exposure_time()
          << ' ' << request.iso_follows_s.value_or(-1) << ' ' << request.environment_layer << '\n'
-         << further_settings;
+         << static_cast<int>(request.exr_color_space) << '\n';
+    // The contents of configuration files are hashed below, as those of all inputs.
+    const shot::OcioRequest& ocio = request.ocio;
+    for (const std::string& name : {ocio.config.starts_with(shot::kBuiltInConfig) ? ocio.config : "", ocio.display,
+                                    ocio.view, ocio.environment_color_space, ocio.texture_color_space})
+        text << name << '\n';
+    text << further_settings;
     // The 64-bit FNV-1a hash: http://www.isthe.com/chongo/tech/comp/fnv
     constexpr std::uint64_t kOffsetBasis = 0xcbf29ce484222325, kPrime = 0x100000001b3;
     std::uint64_t digest = kOffsetBasis;

@@ -108,6 +108,7 @@ public:
         outputs_.check(frames);
         resolve_keys(request);
         Camera camera = camera_of(request);
+        view_ = view_of(request);
         const LayerSet written_layers = request.settings.layers;
         std::optional<Denoiser> denoiser = denoiser_for(request);
         if (denoiser) request.settings.layers.add(kDenoiserLayers);
@@ -324,13 +325,12 @@ private:
                                   ", except from .exr; --no-denoise keeps it"
                             : "the remaining noise stays: " + why_no_denoiser_);
         const Image& for_screen = denoised ? *denoised : image;
-        if (const std::string notice = exposure_notice(for_screen, shot.camera, request.tone); !notice.empty())
-            warn(notice);
+        if (const std::string notice = exposure_notice(for_screen, shot.camera, *view_); !notice.empty()) warn(notice);
         write(request.denoises ? for_screen : image, for_screen, shot, request, plan_summary, denoiser_name, files,
               keep_going);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         return options_.as_json
-                   ? render_as_json(shot, request, image, files, plan_summary, denoiser_name, warnings_, seconds)
+                   ? render_as_json(shot, request, *view_, image, files, plan_summary, denoiser_name, warnings_, seconds)
                    : summary(shot, request.settings, image, files, denoiser_name, seconds, options_.verbose);
     }
 
@@ -340,9 +340,8 @@ private:
             [](const std::string& path, std::span<const std::uint8_t> bytes) {
                 return image_io::read_image(path, bytes);
             },
-            [](const std::string& path, const std::string& layer, const image_io::WarnOf& warn) {
-                return image_io::read_environment(path, layer, warn);
-            }};
+            [](const std::string& path, const std::string& layer, const io::ColorConversion& to_rec709,
+               const image_io::WarnOf& warn) { return image_io::read_environment(path, layer, warn, {}, to_rec709); }};
         Assembly scene =
             with_memory_for("while reading " + request.scene, [&] { return shot::scene_of(request, readers); });
         inputs_.end();
@@ -407,7 +406,8 @@ private:
             const Image& image = is_exr(path) ? raw : for_screen;
             metadata.denoiser = !is_exr(path) || request.denoises ? denoiser : "";
             try {
-                image_io::write_image(image_io::view_of(image), path, metadata, request.tone, keep_going);
+                image_io::write_image(image_io::view_of(image), path, metadata, *view_, request.exr_color_space,
+                                      keep_going);
             } catch (const Cancelled&) {
                 throw Interrupted{Interrupt::signal(), written.empty() ? "" : "; written before: " + written};
             }
@@ -418,6 +418,7 @@ private:
     const RenderOptions& options_;
     OutputFiles outputs_;
     std::chrono::steady_clock::time_point start_;
+    std::shared_ptr<const View> view_;  ///< develops the pictures
     std::vector<std::string> warnings_;  ///< printed so far, for the JSON report
     std::string why_no_denoiser_;  ///< reason why the default denoiser is not available; empty if it is
     io::InputRecording inputs_;  ///< records the files that are read, for settings_digest

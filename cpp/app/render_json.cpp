@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "../io/text/json_writer.hpp"
+#include "../io/text/printable.hpp"
 #include "../plan/plan.hpp"
 #include "../render/settings/effect_names.hpp"
 #include "../render/settings/setting_names.hpp"
@@ -51,11 +52,11 @@ void write_exposure(JsonWriter& json, const shot::Shot& shot, const Image& image
     json.end();
 }
 
-void write_settings(JsonWriter& json, const shot::ShotRequest& request, const std::string& plan) {
+void write_settings(JsonWriter& json, const shot::ShotRequest& request, const View& view, const std::string& plan) {
     const RenderSettings& settings = request.settings;
     json.key("seed").number(settings.seed).key("max_bounces").number(settings.path().max_bounces);
     json.key("transport").text(name_of(settings.transport)).key("clamp_cd_m2").number(settings.clamp);
-    json.key("tone").text(name_of(request.tone));
+    for (const auto& [name, value] : view.entries()) json.key(name.substr(name.find(':') + 1)).text(io::printable(value));
     write_texts(json, "effects", names_of(settings.effects));
     const auto light = settings.spectral_light();
     json.key("illuminant").text(light ? light->text() : "").key("plan").text(plan);
@@ -87,8 +88,8 @@ void write_cost(JsonWriter& json, const RenderStats& stats, double seconds) {
 
 }  // namespace
 
-std::string render_as_json(const shot::Shot& shot, const shot::ShotRequest& request, const Image& image,
-                           const std::vector<std::string>& pictures, const std::string& plan,
+std::string render_as_json(const shot::Shot& shot, const shot::ShotRequest& request, const View& view,
+                           const Image& image, const std::vector<std::string>& pictures, const std::string& plan,
                            const std::string& denoiser, const std::vector<std::string>& warnings, double seconds) {
     JsonWriter json;
     json.begin_object();
@@ -101,7 +102,7 @@ std::string render_as_json(const shot::Shot& shot, const shot::ShotRequest& requ
     json.key("spp").number(static_cast<double>(image.spp));
     write_noise(json, request.settings.noise, image);
     json.key("denoiser").text(denoiser);
-    write_settings(json, request, plan);
+    write_settings(json, request, view, plan);
     write_cost(json, image.stats, seconds);
     write_texts(json, "warnings", warnings);
     return json.end().finish() + '\n';

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "../camera/film/develop.hpp"
 #include "../optics/coating/coated_surface.hpp"
 #include "../render/session/metering.hpp"
 #include "../render/settings/effect_names.hpp"
@@ -111,15 +110,23 @@ struct ExtremeFractions {
     double black = 0, white = 0;
 };
 
-ExtremeFractions extreme_fractions(const Image& image, double iso, ToneCurve tone) {
-    const CodeTable code(iso, tone);
+ExtremeFractions extreme_fractions(const Image& image, double iso, const View& view) {
     std::size_t black = 0, white = 0;
     const std::size_t count = image.exposure.size() / 3;
-    for (std::size_t i = 0; i < count; ++i) {
-        const float* rgb = &image.exposure[3 * i];
-        const int grey = code(0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]);
-        black += grey < kBlackCode;
-        white += grey >= kWhiteCode;
+    constexpr std::size_t kPart = 1 << 16;  // pixels developed at a time
+    std::vector<float> grey(3 * kPart);
+    std::vector<std::uint8_t> codes(grey.size());
+    for (std::size_t first = 0; first < count; first += kPart) {
+        const std::size_t size = std::min(kPart, count - first);
+        for (std::size_t i = 0; i < size; ++i) {
+            const float* rgb = &image.exposure[3 * (first + i)];
+            std::fill_n(&grey[3 * i], 3, 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]);
+        }
+        view.develop(grey.data(), size, iso, codes.data());
+        for (std::size_t i = 0; i < size; ++i) {
+            black += codes[3 * i + 1] < kBlackCode;
+            white += codes[3 * i + 1] >= kWhiteCode;
+        }
     }
     const auto pixels = static_cast<double>(std::max<std::size_t>(count, 1));
     return {static_cast<double>(black) / pixels, static_cast<double>(white) / pixels};
@@ -132,10 +139,11 @@ double stops_above_grey(const Image& image, double iso) {
     return std::log2(metered_exposure(image) * iso / kGrey);
 }
 
-std::string exposure_notice(const Image& image, const Camera& camera, ToneCurve tone) {
+std::string exposure_notice(const Image& image, const Camera& camera, const View& view) {
     const double stops = stops_above_grey(image, camera.iso);
     if (std::isinf(stops)) return "the picture is black: no light reaches the film";
-    const ExtremeFractions extremes = extreme_fractions(image, camera.iso, tone);
+    if (std::fabs(stops) <= kMinError_stops) return "";
+    const ExtremeFractions extremes = extreme_fractions(image, camera.iso, view);
     const bool is_dark = stops < -kMinError_stops && extremes.black >= kMinFraction;
     const bool is_bright = stops > kMinError_stops && extremes.white >= kMinFraction;
     if (!is_dark && !is_bright) return "";

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "../camera/film/camera.hpp"
-#include "../camera/film/develop.hpp"
 #include "../render/film/image.hpp"
 #include "../shot/shot.hpp"
 #include "../shot/shot_request.hpp"
@@ -42,7 +41,7 @@ double stops_above_grey(const Image& image, double iso);
 
 /// Warning about a picture that is nearly all black or white once developed: by how many stops it is off, and which
 /// settings to change. Empty for any other picture.
-std::string exposure_notice(const Image& image, const Camera& camera, ToneCurve tone);
+std::string exposure_notice(const Image& image, const Camera& camera, const View& view);
 
 /// Summary of a picture and its cost, in some lines. `pictures`: files that were written. `denoiser`: its name, empty
 /// if the picture was not denoised. `seconds`: wall-clock time of the whole command. `verbose`: adds rays per second,

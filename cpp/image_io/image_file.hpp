@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "../camera/film/develop.hpp"
 #include "../checkpoint.hpp"
 #include "../io/files/image_metadata.hpp"
 #include "../io/scene_file.hpp"
 #include "../render/film/image.hpp"
+#include "../render/film/view.hpp"
 
 namespace realcam::image_io {
 
@@ -32,9 +32,10 @@ using WarnOf = std::function<void(const std::string& message)>;
 /// an EXR or HDR, are converted to Rec. 709; an EXR that declares an environment map (attribute `envmap`) has the
 /// directions of OpenEXR, and may be a cube map. `layer`: name of an EXR's layer; empty: its beauty or only layer.
 /// Negative numbers become 0, with a warning. Throws ImageFileError if the file cannot be read, if negative numbers are
-/// more than a twentieth of the light, or if a value is not finite or beyond 1e20; and Cancelled.
+/// more than a twentieth of the light, or if a value is not finite or beyond 1e20; and Cancelled. `to_rec709`:
+/// conversion of the file's values, in place of what it states of its colours; empty: none.
 Environment read_environment(const std::string& path, const std::string& layer = {}, const WarnOf& warn = {},
-                             const KeepGoing& keep_going = {});
+                             const KeepGoing& keep_going = {}, const io::ColorConversion& to_rec709 = {});
 
 /// Reads a picture of any projection, with the values that read_environment gives it. Throws the errors of
 /// read_environment.
@@ -70,21 +71,24 @@ inline PictureView view_of(const Image& image) {
 /// Writes a picture; the suffix selects the format. Throws ImageFileError and Cancelled, and then leaves nothing
 /// behind: the file appears under its name only when it is complete.
 ///
-/// - .png, .jpg (quality 95), .tif, .webp (lossless): 8-bit sRGB, developed at metadata.iso by the tone curve. PNG has
-///   a text for every entry of the metadata, JPEG and TIFF have them as lines of the description, and WebP has no
-///   metadata.
+/// - .png, .jpg (quality 95), .tif, .webp (lossless): 8-bit display values, developed at metadata.iso by the view. PNG
+///   has a text for every entry of the metadata, JPEG and TIFF have them as lines of the description, and WebP has no
+///   metadata. Files declare sRGB if the view's values are sRGB.
 /// - .exr: float R, G, B, the exposure of the film in lux seconds, and Z, the depth in metres (infinite where nothing
 ///   is hit). Z is a channel beside the colours, with the name that OpenEXR reserves for depth: compositing programs
 ///   show it as a layer, and readers that do not support it ignore it; many of them would not open a file with a second
 ///   part. Further layers are channels, too (docs/layers.md), and the names of object and material ids are in the
-///   metadata.
+///   metadata. Colours have the primaries of `color_space`, which the attribute `chromaticities` states; variances are
+///   those of linear Rec. 709.
 void write_image(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
-                 ToneCurve tone = ToneCurve::film, const KeepGoing& keep_going = {});
+                 const View& view = ToneView(ToneCurve::film), ExrColorSpace color_space = ExrColorSpace::rec709,
+                 const KeepGoing& keep_going = {});
 
-/// Writes a picture of 8-bit sRGB values `codes` (height * width * 3) in one of the developed formats of write_image.
-/// `entries`: metadata. Throws as write_image does.
+/// Writes a picture of 8-bit display values `codes` (height * width * 3) in one of the developed formats of
+/// write_image. `entries`: metadata. `is_srgb`: true if the file declares sRGB. Throws as write_image does.
 void write_codes(const std::string& path, int width, int height, const std::uint8_t* codes,
-                 const std::vector<std::pair<std::string, std::string>>& entries, const KeepGoing& keep_going = {});
+                 const std::vector<std::pair<std::string, std::string>>& entries, bool is_srgb = true,
+                 const KeepGoing& keep_going = {});
 
 /// Content of an .exr written by write_image: the exposure, and the "realcam:..." entries of its metadata.
 struct FilmFile {

@@ -74,9 +74,6 @@ namespace {
 
 using Matrix = std::array<double, 9>;
 
-/// ITU-R BT.709, which OpenEXR assumes if a file has no chromaticities.
-constexpr Chromaticities kRec709 = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
-
 /// Primaries of files of X, Y and Z, whose white point is arbitrary.
 constexpr std::array<double, 6> kXyzPrimaries = {1, 0, 0, 1, 0, 0};
 
@@ -103,8 +100,8 @@ Matrix xyz_from(const Chromaticities& c) {
 }  // namespace
 
 std::optional<Matrix> rec709_from(const Chromaticities& chromaticities) {
-    if (are_close(chromaticities, kRec709)) return std::nullopt;
-    const Matrix rec709_from_xyz = sensor_detail::inverse(xyz_from(kRec709));
+    if (are_close(chromaticities, kRec709Chromaticities)) return std::nullopt;
+    const Matrix rec709_from_xyz = sensor_detail::inverse(xyz_from(kRec709Chromaticities));
     if (std::equal(kXyzPrimaries.begin(), kXyzPrimaries.end(), chromaticities.begin())) return rec709_from_xyz;
     const Matrix xyz_from_file = xyz_from(chromaticities);
     const auto all_below = [](const auto& values, double limit) {
@@ -114,9 +111,9 @@ std::optional<Matrix> rec709_from(const Chromaticities& chromaticities) {
         throw Error("has degenerate chromaticities of red, green, blue and white");
     const auto white_of = [](const Matrix& m) { return sensor_detail::applied(m, {1, 1, 1}); };
     return sensor_detail::product(
-        rec709_from_xyz,
-        sensor_detail::product(sensor_detail::adaptation(white_of(xyz_from_file), white_of(xyz_from(kRec709))),
-                               xyz_from_file));
+        rec709_from_xyz, sensor_detail::product(sensor_detail::adaptation(white_of(xyz_from_file),
+                                                                          white_of(xyz_from(kRec709Chromaticities))),
+                                                xyz_from_file));
 }
 
 void apply_matrix(const Matrix& matrix, float* pixels, std::size_t count, std::size_t stride) {

@@ -26,6 +26,11 @@ inline constexpr Chromaticities kXyzChromaticities = {1, 0, 0, 1, 0, 0, 1.0 / 3,
 /// chromaticities are those of Rec. 709. Throws Error if they are degenerate.
 std::optional<std::array<double, 9>> rec709_from(const Chromaticities& chromaticities);
 
+/// Chromaticities of ITU-R BT.709, which OpenEXR assumes if a file states none, and of ACEScg: the primaries AP1 and
+/// the white of ACES (Academy S-2014-004).
+inline constexpr Chromaticities kRec709Chromaticities = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
+inline constexpr Chromaticities kAcesCgChromaticities = {0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767};
+
 /// Applies a 3 x 3 matrix to the first three numbers of each pixel. `stride`: distance between pixels, in numbers.
 void apply_matrix(const std::array<double, 9>& matrix, float* pixels, std::size_t count, std::size_t stride);
 

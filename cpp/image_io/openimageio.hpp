@@ -79,7 +79,8 @@ struct EncodedPicture {
     std::string format;  ///< OpenImageIO's name of the format
     int width = 0, height = 0;
     std::vector<Channel> channels;  ///< empty: red, green and blue as 8-bit display values
-    std::vector<std::pair<std::string, std::variant<std::string, float, std::array<float, 2>>>> attributes;
+    std::vector<std::pair<std::string, std::variant<std::string, float, std::array<float, 2>, std::array<float, 8>>>>
+        attributes;
 };
 
 /// Encodes the rows of a picture, in order.

@@ -95,8 +95,9 @@ io::DecodedImage decode(OpenPicture& picture, const KeepGoing& keep_going) {
             picture.channels < 3 ? std::nullopt : picture.rec709};
 }
 
-/// Decodes a picture to radiance in linear Rec. 709, with realcam's directions.
-Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going) {
+/// Decodes a picture to radiance in linear Rec. 709, with realcam's directions. `to_rec709`: see read_environment.
+Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going,
+                               const io::ColorConversion& to_rec709) {
     const bool linear = picture.is_linear, grey = picture.channels < 3;
     check_size(picture, kMaxEnvironmentPixels, sizeof(Color));
     Environment environment;
@@ -105,10 +106,12 @@ Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going
     environment.pixels.resize(picture.pixel_count());
     static_assert(sizeof(Color) == 3 * sizeof(float));
     picture.read(grey ? 1 : 3, 3, &environment.pixels.data()->r, keep_going);
-    const auto linear_value = [&](float v) { return linear ? v : io::linear_of_srgb(v); };
+    const auto linear_value = [&](float v) { return linear || to_rec709 ? v : io::linear_of_srgb(v); };
     for (Color& p : environment.pixels)
         p = {linear_value(p.r), linear_value(grey ? p.r : p.g), linear_value(grey ? p.r : p.b)};
-    if (picture.rec709 && !grey)
+    if (to_rec709)
+        to_rec709({&environment.pixels.data()->r, 3 * environment.pixels.size()});
+    else if (picture.rec709 && !grey)
         apply_matrix(*picture.rec709, &environment.pixels.data()->r, environment.pixels.size(), 3);
     return environment_of(picture.environment_map, std::move(environment), keep_going);
 }
@@ -180,10 +183,10 @@ namespace {
 
 /// Reads a picture as radiance. `advice`: end of the message of a file that cannot be read.
 Environment read_radiance(const std::string& path, const std::string& layer, const std::string& advice,
-                          const WarnOf& warn, const KeepGoing& keep_going) {
+                          const WarnOf& warn, const KeepGoing& keep_going, const io::ColorConversion& to_rec709 = {}) {
     Environment environment;
     try {
-        environment = decode_environment(*open_picture(path, {}, layer), keep_going);
+        environment = decode_environment(*open_picture(path, {}, layer), keep_going, to_rec709);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& error) {
@@ -196,8 +199,9 @@ Environment read_radiance(const std::string& path, const std::string& layer, con
 }  // namespace
 
 Environment read_environment(const std::string& path, const std::string& layer, const WarnOf& warn,
-                             const KeepGoing& keep_going) {
-    return read_radiance(path, layer, "; an environment must be a latitude-longitude picture", warn, keep_going);
+                             const KeepGoing& keep_going, const io::ColorConversion& to_rec709) {
+    return read_radiance(path, layer, "; an environment must be a latitude-longitude picture", warn, keep_going,
+                         to_rec709);
 }
 
 Environment read_picture(const std::string& path, const WarnOf& warn, const KeepGoing& keep_going) {

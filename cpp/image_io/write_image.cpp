@@ -4,11 +4,13 @@
 #include <string_view>
 #include <vector>
 
+#include "../camera/sensor/sensor_response.hpp"
 #include "../error.hpp"
 #include "../io/files/uri.hpp"
 #include "../io/text/json_writer.hpp"
 #include "../io/text/printable.hpp"
 #include "image_file.hpp"
+#include "open_picture.hpp"
 #include "openimageio.hpp"
 
 namespace realcam::image_io {
@@ -69,10 +71,11 @@ EncodedPicture picture_header(const WrittenFormat& format, int width, int height
     return picture;
 }
 
-/// Header of a file of 8-bit sRGB values.
-EncodedPicture developed_header(const WrittenFormat& format, int width, int height, const Entries& entries) {
+/// Header of a file of 8-bit display values. `is_srgb`: true if the file declares sRGB.
+EncodedPicture developed_header(const WrittenFormat& format, int width, int height, const Entries& entries,
+                                bool is_srgb) {
     EncodedPicture picture = picture_header(format, width, height, entries);
-    picture.attributes.emplace_back("oiio:ColorSpace", "sRGB");
+    if (is_srgb) picture.attributes.emplace_back("oiio:ColorSpace", "sRGB");
     if (picture.format == "jpeg") picture.attributes.emplace_back("jpeg:subsampling", "4:4:4");
     if (picture.format == "jpeg" || picture.format == "tiff") {
         // JPEG and TIFF have no attributes with arbitrary names, and WebP has no text at all.
@@ -110,18 +113,16 @@ void write_rows(const std::string& path, const EncodedPicture& picture, const Ke
     file.finish();
 }
 
-/// Writes a picture as 8-bit sRGB values.
+/// Writes a picture as 8-bit display values.
 void write_developed(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
-                     ToneCurve tone, const KeepGoing& keep_going) {
+                     const View& view, const KeepGoing& keep_going) {
     Entries entries = metadata.entries();
-    entries.emplace_back("realcam:tone", tone == ToneCurve::film ? "film" : "linear");
-    const EncodedPicture file = developed_header(format_of(path), picture.width, picture.height, entries);
-    const std::size_t row = row_values(picture, 3);
+    std::ranges::move(view.entries(), std::back_inserter(entries));
+    const EncodedPicture file =
+        developed_header(format_of(path), picture.width, picture.height, entries, view.is_srgb());
+    const std::size_t row = row_values(picture, 1);
     write_rows<std::uint8_t>(path, file, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
-        for (std::size_t i = first * row; i < end * row; ++i) {
-            const double value = sensor_value(static_cast<double>(picture.exposure[i]), metadata.iso);
-            *out++ = srgb_code(apply_tone_curve(tone, value));
-        }
+        view.develop(picture.exposure + 3 * first * row, (end - first) * row, metadata.iso, out);
     });
 }
 
@@ -135,10 +136,11 @@ LayerChannels channels_of(Layer layer) {
     switch (layer) {
         case Layer::depth: break;  // Z, which every file has
         case Layer::normal: return {{"Normal.X", "Normal.Y", "Normal.Z"}, "scene axes"};
-        case Layer::albedo: return {{"Albedo.R", "Albedo.G", "Albedo.B"}, "0 to 1, linear Rec. 709"};
+        case Layer::albedo: return {{"Albedo.R", "Albedo.G", "Albedo.B"}, "0 to 1, linear"};
         case Layer::circle_of_confusion_mm: return {{"CircleOfConfusion"}, "mm on the film, diameter"};
         case Layer::sample_count: return {{"SampleCount"}, "samples of the pixel"};
-        case Layer::variance: return {{"Variance.R", "Variance.G", "Variance.B"}, "(lux seconds)^2, of R, G, B"};
+        case Layer::variance:
+            return {{"Variance.R", "Variance.G", "Variance.B"}, "(lux seconds)^2, of R, G, B in linear Rec. 709"};
         case Layer::depth_middle: return {{"DepthMiddle.Z"}, "metres from the film along the axis, middle ray"};
         case Layer::normal_middle:
             return {{"NormalMiddle.X", "NormalMiddle.Y", "NormalMiddle.Z"}, "scene axes, middle ray"};
@@ -167,8 +169,10 @@ std::string json_of(const IdNames& names) {
 }
 
 /// Adds the channels of the layers, and the attributes with their units and the names of ids.
-void add_layers(const PictureView& picture, EncodedPicture& exr) {
-    std::string unit = "R, G, B: lux seconds on the film, linear Rec. 709; Z: metres from the film along the axis";
+void add_layers(const PictureView& picture, ExrColorSpace color_space, EncodedPicture& exr) {
+    std::string unit = std::string("R, G, B: lux seconds on the film, linear ") +
+                       (color_space == ExrColorSpace::acescg ? "ACEScg" : "Rec. 709") +
+                       "; Z: metres from the film along the axis";
     for (const PictureView::Layer& layer : picture.layers) {
         const LayerChannels channels = channels_of(layer.layer);
         for (const char* name : channels.names) exr.channels.push_back({name, info_of(layer.layer).is_number});
@@ -182,12 +186,19 @@ void add_layers(const PictureView& picture, EncodedPicture& exr) {
         exr.attributes.emplace_back("realcam:materials", json_of(picture.material_names));
 }
 
+/// True if a layer has colours, which are converted to the colour space of the file. A variance is not one: converted,
+/// it would need the covariances of the channels.
+bool has_colors(Layer layer) {
+    return layer == Layer::albedo || layer == Layer::traced_light || layer == Layer::dual_pixel_left ||
+           layer == Layer::dual_pixel_right;
+}
+
 /// Writes exposure, depth and layers as OpenEXR.
 void write_exr(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
-               const KeepGoing& keep_going) {
+               ExrColorSpace color_space, const KeepGoing& keep_going) {
     EncodedPicture exr = picture_header(kExr, picture.width, picture.height, metadata.entries());
     exr.channels = {{"R"}, {"G"}, {"B"}, {"Z"}};
-    add_layers(picture, exr);
+    add_layers(picture, color_space, exr);
     // Standard attributes of OpenEXR, in its units.
     const auto set = [&](const char* name, double value) {
         exr.attributes.emplace_back(name, static_cast<float>(value));
@@ -200,16 +211,31 @@ void write_exr(const PictureView& picture, const std::string& path, const io::Im
     exr.attributes.emplace_back("lensModel", metadata.lens);
     exr.attributes.emplace_back("sensorOverallDimensions", std::array{static_cast<float>(metadata.film_width_mm),
                                                                       static_cast<float>(metadata.film_height_mm)});
+    const bool is_acescg = color_space == ExrColorSpace::acescg;
+    const Chromaticities& chromaticities = is_acescg ? kAcesCgChromaticities : kRec709Chromaticities;
+    std::array<float, 8> numbers{};
+    std::ranges::transform(chromaticities, numbers.begin(), [](double v) { return static_cast<float>(v); });
+    exr.attributes.emplace_back("chromaticities", numbers);
+    std::optional<std::array<double, 9>> from_rec709;
+    if (const auto rec709 = rec709_from(chromaticities)) from_rec709 = sensor_detail::inverse(*rec709);
+    const auto write_colors = [&](const float* rgb, float* out) {
+        std::copy_n(rgb, 3, out);
+        if (from_rec709) apply_matrix(*from_rec709, out, 1, 3);
+    };
     const std::size_t row = row_values(picture, 1);
     // All channels have four bytes, so whole numbers are stored among the floats.
     write_rows<float>(path, exr, keep_going, [&](std::size_t first, std::size_t end, float* out) {
         for (std::size_t i = first * row; i < end * row; ++i) {
-            for (std::size_t c = 0; c < 3; ++c) *out++ = picture.exposure[3 * i + c];
-            *out++ = picture.depth[i];
+            write_colors(&picture.exposure[3 * i], out);
+            out[3] = picture.depth[i];
+            out += 4;
             for (const PictureView::Layer& layer : picture.layers) {
                 if (layer.layer == Layer::depth) continue;
                 const auto channels = static_cast<std::size_t>(info_of(layer.layer).channels);
-                std::memcpy(out, static_cast<const char*>(layer.values) + 4 * channels * i, 4 * channels);
+                if (has_colors(layer.layer))
+                    write_colors(static_cast<const float*>(layer.values) + 3 * i, out);
+                else
+                    std::memcpy(out, static_cast<const char*>(layer.values) + 4 * channels * i, 4 * channels);
                 out += channels;
             }
         }
@@ -218,22 +244,23 @@ void write_exr(const PictureView& picture, const std::string& path, const io::Im
 
 }  // namespace
 
-void write_image(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata, ToneCurve tone,
-                 const KeepGoing& keep_going) {
+void write_image(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
+                 const View& view, ExrColorSpace color_space, const KeepGoing& keep_going) {
     check_name(path);
     if (picture.width < 1 || picture.height < 1) throw ImageFileError(path + ": the picture is empty");
     if (&format_of(path) == &kExr)
-        write_exr(picture, path, metadata, keep_going);
+        write_exr(picture, path, metadata, color_space, keep_going);
     else
-        write_developed(picture, path, metadata, tone, keep_going);
+        write_developed(picture, path, metadata, view, keep_going);
 }
 
 void write_codes(const std::string& path, int width, int height, const std::uint8_t* codes,
-                 const std::vector<std::pair<std::string, std::string>>& entries, const KeepGoing& keep_going) {
+                 const std::vector<std::pair<std::string, std::string>>& entries, bool is_srgb,
+                 const KeepGoing& keep_going) {
     check_name(path);
     if (&format_of(path) == &kExr) throw ImageFileError(path + ": 8-bit values need a .png, .jpg, .tif or .webp file");
     if (width < 1 || height < 1) throw ImageFileError(path + ": the picture is empty");
-    const EncodedPicture file = developed_header(format_of(path), width, height, entries);
+    const EncodedPicture file = developed_header(format_of(path), width, height, entries, is_srgb);
     const std::size_t row = 3 * static_cast<std::size_t>(width);
     write_rows<std::uint8_t>(path, file, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
         std::memcpy(out, codes + first * row, (end - first) * row);

@@ -123,6 +123,8 @@ public:
             if (const auto* number = std::get_if<float>(&value)) spec.attribute(name, *number);
             if (const auto* pair = std::get_if<std::array<float, 2>>(&value))
                 spec.attribute(name, TypeDesc(TypeDesc::FLOAT, TypeDesc::VEC2), pair->data());
+            if (const auto* numbers = std::get_if<std::array<float, 8>>(&value))
+                spec.attribute(name, TypeDesc(TypeDesc::FLOAT, 8), numbers->data());
         }
         output_ = ImageOutput::create(picture.format);
         if (!output_) throw Error("OpenImageIO cannot write ." + picture.format + ": " + first_line(OIIO::geterror()));

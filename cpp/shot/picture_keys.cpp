@@ -201,6 +201,30 @@ void read_setting(const ShotTable& t, Key key, ShotRequest& r) {
     t.checked(key.name, [&] { key.set(key, t.shown(key.name), r, value_in(t, key)); });
 }
 
+/// Reads the name of a part of an OpenColorIO configuration, which a text in the request holds.
+template <std::string OcioRequest::* member>
+void read_ocio_name(const ShotTable& t, Key key, ShotRequest& r) {
+    if (r.ocio.config.empty())
+        t.fail(t.shown(key.name) + " belongs to a configuration of OpenColorIO, and \"ocio\" names none",
+               t.find(key.name));
+    const std::string name = t.name(key.name);
+    if (name.empty()) t.fail(t.shown(key.name) + " is empty; expected " + key.wanted, t.find(key.name));
+    r.ocio.*member = name;
+}
+
+/// Reads the configuration of OpenColorIO. The key precedes those that belong to it.
+void read_ocio(const ShotTable& t, Key key, ShotRequest& r) {
+    const std::string name = t.name(key.name);
+    r.ocio.config = name.starts_with(kBuiltInConfig) ? name : t.path(key.name);
+    if (const toml::node* const tone = t.find("tone"))
+        t.fail(t.shown("tone") + " and " + t.shown(key.name) + " exclude each other: a view replaces the tone curve",
+               tone);
+}
+
+void read_exr_color_space(const ShotTable& t, Key key, ShotRequest& r) {
+    r.exr_color_space = *t.named(key.name, named<kExrColorSpaces>, key.wanted);
+}
+
 void read_tone(const ShotTable& t, Key key, ShotRequest& r) {
     r.tone = *t.named(key.name, named<kToneCurves>, key.wanted);
 }
@@ -250,7 +274,8 @@ std::vector<ShotKey> picture_keys() {
          "It is the RMS error of the tile's pixels as a fraction of their mean, or of a hundredth of white if that is "
          "larger."),
         setting("noise_codes", "--noise-codes", "CODES", number, kNumber,
-         "The same noise goal in 8-bit codes of the developed picture", "", {"noise", "spp"},
+         "The same noise goal in 8-bit codes of the picture with the linear tone curve, under every view", "",
+         {"noise", "spp"},
          set_noise<set_number<&P::noise, &N::noise_codes>>, get_value<&P::noise, &N::noise_codes>),
         setting("seconds", "--seconds", "SECONDS", number, kNumber,
          "Time limit for taking samples, unless spp is a number", "", {},
@@ -273,7 +298,28 @@ std::vector<ShotKey> picture_keys() {
          "Largest radiance of indirect light in cd/m^2: fewer fireflies, but a picture that is too dark", "0: no limit", {},
          set_number<&P::settings, &S::clamp>, get_value<&P::settings, &S::clamp>),
         {"tone", "--tone", kGroup, "CURVE", text, one_of(kToneCurves),
-         "Tone mapping of developed pictures: film (soft highlights) or linear (clipped)", "film", {}, read_tone},
+         "Tone mapping of developed pictures: film (soft highlights) or linear (clipped)", "film",
+         {"ocio", "display", "view"}, read_tone},
+        {"ocio", "--ocio", kGroup, "CONFIG", text, "a configuration of OpenColorIO",
+         "Configuration of OpenColorIO, a view of which replaces the tone curve: a file, or the name of a built-in one, "
+         "such as ocio://studio-config-latest",
+         "none", {"tone", "display", "view", "environment_color_space", "texture_color_space"}, read_ocio, nullptr,
+         false, nullptr, nullptr, "The variable OCIO of the environment is not read (docs/colour.md)."},
+        {"display", "--display", kGroup, "NAME", text, "the name of a display of the configuration",
+         "Display of the OpenColorIO configuration", "the configuration's", {"view"},
+         read_ocio_name<&OcioRequest::display>},
+        {"view", "--view", kGroup, "NAME", text, "the name of a view of the display",
+         "View of the OpenColorIO configuration", "the display's", {}, read_ocio_name<&OcioRequest::view>},
+        {"environment_color_space", "--environment-color-space", kGroup, "NAME", text,
+         "the name of a colour space of the configuration, or file_rules",
+         "Colour space of the environment's picture in the OpenColorIO configuration; file_rules: by its file's name",
+         "as the picture states", {}, read_ocio_name<&OcioRequest::environment_color_space>},
+        {"texture_color_space", "--texture-color-space", kGroup, "NAME", text,
+         "the name of a colour space of the configuration, or file_rules",
+         "The same for textures of colours", "as each picture states", {},
+         read_ocio_name<&OcioRequest::texture_color_space>},
+        {"exr_color_space", "--exr-color-space", kGroup, "NAME", text, one_of(kExrColorSpaces),
+         "Colour space of .exr files: linear Rec. 709 or ACEScg", "rec709", {}, read_exr_color_space},
         setting("layers", "--layers", "NAMES", names, "names (docs/layers.md)",
          "Layers also written to .exr, separated by commas: all, or some of " + layer_names(), "none", {},
          set_names<layers_named, &P::settings, &S::layers>, get_names<&P::settings, &S::layers>,

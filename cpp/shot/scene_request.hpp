@@ -12,8 +12,9 @@ namespace realcam::shot {
 /// Functions that decode picture files. The programs supply those of image_io.
 struct PictureReaders {
     io::ImageReader texture;  ///< reads a texture
-    /// Reads an environment. `layer`: name of an OpenEXR layer, or empty. `warn`: receives the reader's warnings.
-    std::function<Environment(const std::string& path, const std::string& layer,
+    /// Reads an environment. `layer`: name of an OpenEXR layer, or empty. `to_rec709`: conversion of its colours, or
+    /// empty: as the file states. `warn`: receives the reader's warnings.
+    std::function<Environment(const std::string& path, const std::string& layer, const io::ColorConversion& to_rec709,
                               const std::function<void(const std::string&)>& warn)>
         environment;
 };

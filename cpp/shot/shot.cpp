@@ -9,6 +9,7 @@
 #include "../camera/film/camera.hpp"
 #include "../camera/models/pinhole_camera.hpp"
 #include "../error.hpp"
+#include "../io/files/readable_file.hpp"
 #include "../io/lens/lens_file.hpp"
 #include "../math/hypotenuse.hpp"
 #include "../math/random.hpp"
@@ -136,6 +137,58 @@ void resolve_keys(ShotRequest& request) {
     if (zooms && request.f_number) request.keys.front().f_number = std::exchange(request.f_number, {});
 }
 
+OcioReader& ocio_reader() {
+    static OcioReader reader;
+    return reader;
+}
+
+namespace {
+
+/// Opens the configuration of a request. Throws InputError.
+std::shared_ptr<const OcioConfig> opened(const OcioRequest& ocio) {
+    if (!ocio_reader())
+        throw InputError(ocio.config +
+                         ": this program has no OpenColorIO; the command of the Python package realcam[color] has it");
+    if (!ocio.config.starts_with(kBuiltInConfig))
+        if (const std::string why = io::why_unreadable(ocio.config); !why.empty())
+            throw InputError(ocio.config + ": " + why);
+    return ocio_reader()(ocio.config);
+}
+
+/// Returns readers that convert pictures from the colour spaces of a request. Throws InputError if the configuration
+/// does not have them.
+PictureReaders with_color_spaces(const OcioRequest& ocio, PictureReaders readers) {
+    if (ocio.environment_color_space.empty() && ocio.texture_color_space.empty()) return readers;
+    // Returns a function from the path of a picture to the conversion. Pictures in memory have no rule.
+    const auto conversions = [config = opened(ocio)](const std::string& color_space) {
+        const bool has_rules = color_space == kFileRules;
+        return [=, stated = has_rules ? io::ColorConversion()
+                                      : config->to_rec709(color_space, "")](const std::string& path) {
+            return has_rules && !path.empty() ? config->to_rec709(color_space, path) : stated;
+        };
+    };
+    if (!ocio.environment_color_space.empty())
+        readers.environment = [conversion = conversions(ocio.environment_color_space), read = readers.environment](
+                                  const std::string& path, const std::string& layer, const io::ColorConversion&,
+                                  const auto& warn) { return read(path, layer, conversion(path), warn); };
+    if (!ocio.texture_color_space.empty())
+        readers.texture = [conversion = conversions(ocio.texture_color_space), read = readers.texture](
+                              const std::string& path, std::span<const std::uint8_t> bytes) {
+            std::optional<io::DecodedImage> image = read(path, bytes);
+            if (image) image->to_rec709 = conversion(path);
+            return image;
+        };
+    return readers;
+}
+
+}  // namespace
+
+std::shared_ptr<const View> view_of(const ShotRequest& request) {
+    const OcioRequest& ocio = request.ocio;
+    if (ocio.config.empty()) return std::make_shared<ToneView>(request.tone);
+    return opened(ocio)->view(ocio.display, ocio.view);
+}
+
 CalibratedCameraMaker& calibrated_camera_maker() {
     static CalibratedCameraMaker maker;
     return maker;
@@ -202,21 +255,18 @@ Camera camera_of(const ShotRequest& request) {
     return with_key(std::move(camera), request.opening_key());
 }
 
-Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, const KeepGoing& keep_going) {
-    return scene_of(request,
-                    io::read_scene(request.scene, {request.scale, {}, keep_going, request.variants}, readers.texture),
-                    readers, keep_going);
-}
+namespace {
 
-Assembly scene_of(const ShotRequest& request, Assembly scene, const PictureReaders& readers,
-                  const KeepGoing& keep_going) {
+/// Adds additions, texture and environment of a request to its scene.
+Assembly completed(const ShotRequest& request, Assembly scene, const PictureReaders& readers,
+                   const KeepGoing& keep_going) {
     scene = with_additions(std::move(scene), request.additions, readers, keep_going);
     if (request.texture.empty() && !request.chooses_environment()) return scene;
     return with_static_geometry(std::move(scene), [&](Scene& changed) {
         if (!request.texture.empty()) add_texture(changed, request.texture, readers);
         if (!request.environment_file.empty())
             changed.environment =
-                readers.environment(request.environment_file, request.environment_layer,
+                readers.environment(request.environment_file, request.environment_layer, {},
                                     [&](const std::string& warning) { changed.warnings.push_back(warning); });
         if (request.environment_cd_m2) {
             changed.environment = {};
@@ -226,6 +276,20 @@ Assembly scene_of(const ShotRequest& request, Assembly scene, const PictureReade
         if (request.chooses_environment())
             changed.environment = realcam::changed(std::move(changed.environment), request.environment_change);
     });
+}
+
+}  // namespace
+
+Assembly scene_of(const ShotRequest& request, const PictureReaders& file_readers, const KeepGoing& keep_going) {
+    const PictureReaders readers = with_color_spaces(request.ocio, file_readers);
+    return completed(request,
+                     io::read_scene(request.scene, {request.scale, {}, keep_going, request.variants}, readers.texture),
+                     readers, keep_going);
+}
+
+Assembly scene_of(const ShotRequest& request, Assembly scene, const PictureReaders& readers,
+                  const KeepGoing& keep_going) {
+    return completed(request, std::move(scene), with_color_spaces(request.ocio, readers), keep_going);
 }
 
 Shot set_up(const ShotRequest& request, Camera camera, Assembly scene) {

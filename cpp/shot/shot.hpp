@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -77,6 +78,10 @@ struct Shot {
 /// its f-number is moved to the first keyframe, because the lens need not reach it at its initial zoom position. Throws
 /// InputError and LensFileError.
 void resolve_keys(ShotRequest& request);
+
+/// Returns the view that develops the picture: a view of the request's OpenColorIO configuration, or its tone curve.
+/// Throws InputError.
+std::shared_ptr<const View> view_of(const ShotRequest& request);
 
 /// Lens, film and dials of a request after resolve_keys, before the camera is placed. Throws InputError and
 /// LensFileError for all errors that can be found before the scene is read, which may take long.

@@ -12,6 +12,7 @@
 #include "../render/settings/render_settings.hpp"
 #include "../scene/scene.hpp"
 #include "calibrated_camera.hpp"
+#include "ocio.hpp"
 #include "scene_request.hpp"
 
 namespace realcam::shot {
@@ -82,6 +83,8 @@ struct ShotRequest : PictureRequest {
     /// Set by --no-denoise. Otherwise pictures for screens that miss the default noise goal are denoised.
     bool keeps_noise = false;
     ToneCurve tone = ToneCurve::film;
+    OcioRequest ocio;
+    ExrColorSpace exr_color_space = ExrColorSpace::rec709;
 
     /// State of the keyframes when the shutter opens.
     CameraKey opening_key() const { return key_at(keys, shutter.opens_s); }

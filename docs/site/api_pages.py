@@ -39,7 +39,7 @@ GROUPS = {
     "Scene": ("Scene", "Material", "read_environment"),
     "Pictures": (
         "render", "photograph", "RenderSettings", "RenderStats", "Image", "Shot", "Session", "ReachedNoise", "LiveView",
-        "LiveFrame", "Device", "DeviceArray", "devices",
+        "LiveFrame", "OcioView", "Device", "DeviceArray", "devices",
     ),
     "Many machines": ("Job", "JobStatus", "FilmPart"),
     "Effects and accuracy": (

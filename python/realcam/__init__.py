@@ -79,6 +79,7 @@ from .image import Image
 from .image_file import read_environment
 from .lens import Mirror, Stop
 from .live_view import LiveView
+from .ocio import OcioView
 from .planning import plan
 from .raw_image import RawImage
 from .render import render
@@ -225,6 +226,7 @@ __all__ = [
     "Meridian",
     "Mirror",
     "NothingToPlan",
+    "OcioView",
     "Operand",
     "OpticalFlow",
     "Optimisation",

@@ -12,6 +12,7 @@ from . import _core, denoiser, notebook
 from ._core import Camera, InputError, RenderSettings, RenderStats
 from .files import system_name
 from .number_text import counted
+from .ocio import OcioView, develop
 from .pickling import PickledByFields
 from .settings import setting
 
@@ -31,6 +32,7 @@ class Image(PickledByFields):
     settings: those of the render, with "auto" replaced by the planned values. plan: Plan.summary; empty without a plan.
     denoiser: name and version if the pixels were denoised, otherwise empty. shortfall: a sentence if the noise exceeds
       its limit, otherwise empty.
+    tone, exr_color_space: how developed() and save() convert the pixels unless told otherwise.
     """
 
     pixels: np.ndarray
@@ -46,6 +48,8 @@ class Image(PickledByFields):
     denoiser: str = ""
     plan: str = ""
     shortfall: str = ""
+    tone: str | OcioView = "film"
+    exr_color_space: str = "rec709"
 
     transport, clamp_cd_m2 = setting("transport"), setting("clamp_cd_m2")
     effects, illuminant = setting("effects"), setting("illuminant")
@@ -67,6 +71,8 @@ class Image(PickledByFields):
         for names in (self.object_names, self.material_names):
             if not isinstance(names, tuple) or not all(isinstance(name, str) for name in names):
                 raise InputError("object_names and material_names must be tuples of texts")
+        if not isinstance(self.tone, (str, OcioView)) or not isinstance(self.exr_color_space, str):
+            raise InputError("tone must be a text or an OcioView, and exr_color_space a text")
         self.metadata()  # raises InputError for other attributes of the wrong type
 
     def __eq__(self, other: object) -> bool:
@@ -97,15 +103,16 @@ class Image(PickledByFields):
         )
 
     def _repr_png_(self) -> bytes:
-        return notebook.picture_png(self.pixels, self.camera.iso)
+        return notebook.picture_png(self.pixels, self.camera.iso, self.tone)
 
-    def developed(self, tone: str = "film", iso: float | None = None) -> np.ndarray:
-        """Returns the picture as 8-bit sRGB values, (H, W, 3) uint8.
+    def developed(self, tone: str | OcioView | None = None, iso: float | None = None) -> np.ndarray:
+        """Returns the picture as 8-bit display values, (H, W, 3) uint8.
 
-        iso: sensitivity; None: the camera's. An exposure of 10 / iso lux seconds becomes middle grey (118). tone:
-        "film" (soft highlights) or "linear" (clipped). Raises InputError.
+        tone: tone curve, "film" (soft highlights) or "linear" (clipped), with values in sRGB; or a view of
+        OpenColorIO; None: the image's. iso: sensitivity; None: the camera's. An exposure of 10 / iso lux seconds is
+        middle grey, which tone curves develop to 118. Raises InputError.
         """
-        return _core.develop(self.pixels, self.camera.iso if iso is None else iso, tone)
+        return develop(self.pixels, self.camera.iso if iso is None else iso, self.tone if tone is None else tone)
 
     def denoised(self, *, device: str = "auto") -> Image:
         """Returns the picture denoised by Intel's Open Image Denoise: for viewing, not for measurements.
@@ -120,16 +127,27 @@ class Image(PickledByFields):
         layers = {layer: array for layer, array in self.layers.items() if layer not in noisy}
         return replace(self, pixels=pixels, layers=layers, denoiser=name)
 
-    def save(self, path: str | os.PathLike[str], tone: str = "film") -> None:
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        tone: str | OcioView | None = None,
+        *,
+        exr_color_space: str | None = None,
+    ) -> None:
         """Writes .png, .jpg, .tif, .webp (developed) or .exr (film exposure R, G, B in lux seconds, depth as Z in
         metres, and all layers).
 
-        Lens, f-number, focus, exposure time, ISO, seed and version are in the file's metadata. Raises ImageFileError;
-        no half-written file is left. Existing files are replaced, even those that the scene was read from.
+        tone: see developed(). exr_color_space: of the colours in .exr files, "rec709" or "acescg", both linear; None:
+        the image's. Lens, f-number, focus, exposure time, ISO, seed and version are in the file's metadata. Raises
+        ImageFileError; no half-written file is left. Existing files are replaced, even those that the scene was read
+        from.
         """
-        if tone not in ("film", "linear"):
-            raise InputError(f'unknown tone curve "{tone}"; expected film or linear')
-        _core._write_picture(system_name(path), self, tone == "film")
+        _core._write_picture(
+            system_name(path),
+            self,
+            self.tone if tone is None else tone,
+            self.exr_color_space if exr_color_space is None else exr_color_space,
+        )
 
     def metadata(self) -> dict[str, str]:
         """Returns the metadata of picture files: values by their names "realcam:..."."""

@@ -41,9 +41,12 @@ def _with_warnings(pixels: np.ndarray, messages: list[str]) -> np.ndarray:
     return pixels
 
 
-def write_codes(codes: np.ndarray, path: str | os.PathLike[str], entries: Mapping[str, str]) -> None:
-    """Writes (H, W, 3) uint8 sRGB as one of DEVELOPED, with metadata. Raises ImageFileError."""
-    _core._write_codes(system_name(path), codes, list(entries.items()))
+def write_codes(
+    codes: np.ndarray, path: str | os.PathLike[str], entries: Mapping[str, str], *, is_srgb: bool = True
+) -> None:
+    """Writes 8-bit display values (H, W, 3) as one of DEVELOPED, with metadata. is_srgb: the file declares sRGB. Raises
+    ImageFileError."""
+    _core._write_codes(system_name(path), codes, list(entries.items()), is_srgb)
 
 
 def read_film(path: str | os.PathLike[str]) -> tuple[np.ndarray, dict[str, str]]:

@@ -9,13 +9,14 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import Plan, develop
+from ._core import Plan
 from .number_text import number_text, percent_text
+from .ocio import OcioView, develop
 
 LONGEST_SIDE_PX = 1200
 
 
-def picture_png(exposure: NDArray[np.float32], iso: float) -> bytes:
+def picture_png(exposure: NDArray[np.float32], iso: float, tone: str | OcioView) -> bytes:
     """Returns a PNG file of an exposure, (H, W, 3) lux seconds, developed and reduced to at most LONGEST_SIDE_PX."""
     import matplotlib.image
 
@@ -23,7 +24,7 @@ def picture_png(exposure: NDArray[np.float32], iso: float) -> bytes:
     height, width = exposure.shape[0] // step * step, exposure.shape[1] // step * step
     blocks = exposure[:height, :width].reshape(height // step, step, width // step, step, 3)
     file = io.BytesIO()
-    matplotlib.image.imsave(file, develop(blocks.mean(axis=(1, 3)), iso, "film"), format="png")
+    matplotlib.image.imsave(file, develop(blocks.mean(axis=(1, 3)), iso, tone), format="png")
     return file.getvalue()
 
 

@@ -151,7 +151,7 @@ class Encoder:
             if isinstance(value, (str, float)):
                 spec.attribute(key, value)
             else:
-                spec.attribute(key, oiio.TypeDesc(oiio.FLOAT, oiio.VEC2), tuple(value))
+                spec.attribute(key, oiio.TypeDesc("vec2" if len(value) == 2 else f"float[{len(value)}]"), tuple(value))
         output = oiio.ImageOutput.create(format)
         if output is None:
             raise OSError(f"OpenImageIO cannot write .{format}: {_text(oiio.geterror)}")

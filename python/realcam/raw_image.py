@@ -16,6 +16,7 @@ import numpy as np
 from . import _core, demosaicing, dng, image_file
 from ._core import Film, InputError, Sensor
 from .image import Image
+from .ocio import OcioView, develop, metadata_of
 from .pickling import PickledByFields
 
 # Range of exposure times in s, of ISO values and of pixel pitches in um: positive numbers that float32 represents.
@@ -140,16 +141,18 @@ class RawImage(PickledByFields):
         result: np.ndarray = balanced @ film_from_balanced.T
         return result
 
-    def developed(self, tone: str = "linear", iso: float | None = None, demosaic: str = "menon") -> np.ndarray:
-        """Returns the picture as 8-bit sRGB values, (H, W, 3) uint8, like Image.developed.
+    def developed(
+        self, tone: str | OcioView = "linear", iso: float | None = None, demosaic: str = "menon"
+    ) -> np.ndarray:
+        """Returns the picture as 8-bit display values, (H, W, 3) uint8, like Image.developed.
 
         tone: "linear" (clipped at white, half a stop below saturation) or "film", whose shoulder expects brighter
-        highlights than a sensor records. iso: None is that of the exposure; another value scales the brightness.
-        demosaic: as for exposure(). Raises InputError.
+        highlights than a sensor records; or a view of OpenColorIO. iso: None is that of the exposure; another value
+        scales the brightness. demosaic: as for exposure(). Raises InputError.
         """
-        return _core.develop(self.exposure(demosaic), self.iso if iso is None else iso, tone)
+        return develop(self.exposure(demosaic), self.iso if iso is None else iso, tone)
 
-    def save(self, path: str | os.PathLike[str], tone: str = "linear", demosaic: str = "menon") -> None:
+    def save(self, path: str | os.PathLike[str], tone: str | OcioView = "linear", demosaic: str = "menon") -> None:
         """Writes the mosaic as .dng (for raw developers) or .npy, or the developed picture as .png, .jpg, .tif or
         .webp.
 
@@ -163,7 +166,10 @@ class RawImage(PickledByFields):
             dng.write_array(self.mosaic, path)
         elif suffix in image_file.DEVELOPED:
             image_file.write_codes(
-                self.developed(tone, demosaic=demosaic), path, {**self.metadata(), "realcam:tone": tone}
+                self.developed(tone, demosaic=demosaic),
+                path,
+                self.metadata() | metadata_of(tone),
+                is_srgb=not isinstance(tone, OcioView) or tone.is_srgb,
             )
         else:
             raise InputError(

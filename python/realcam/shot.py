@@ -14,6 +14,7 @@ from . import _core, denoiser
 from ._core import Camera, CameraKey, InputError, Lens, RenderSettings, Scene, Shake
 from .bundled_scenes import bundled_file
 from .image import Image
+from .ocio import OcioView
 from .planning import resolved_film
 from .render import ProgressCallback, render
 from .settings import setting
@@ -59,7 +60,8 @@ class Shot:
 
     scene, camera: what is photographed. `camera` has the state of the keys when its shutter opens, without shake.
     settings: render settings, which are also attributes of the shot: shot.spp is shot.settings.spp.
-    tone: tone curve for Image.save, "film" or "linear".
+    tone: tone curve, "film" or "linear", or view of OpenColorIO with which the picture is developed.
+    exr_color_space: of .exr files, "rec709" or "acescg".
     keys: keyframes of focus, f-number and other lens and exposure settings, which override the camera's, and of cuts
       to other lenses. shake: shake of a hand-held camera; None: there is none.
     iso_follows_s: time constant in s with which the automatic ISO of a video is smoothed; None: fixed ISO.
@@ -69,10 +71,11 @@ class Shot:
     scene: Scene
     camera: Camera
     settings: RenderSettings = field(default_factory=RenderSettings)
-    tone: str = "film"
+    tone: str | OcioView = "film"
     keys: tuple[CameraKey, ...] = ()
     shake: Shake | None = None
     iso_follows_s: float | None = None
+    exr_color_space: str = "rec709"
 
     def __post_init__(self) -> None:
         if self.keys:
@@ -133,7 +136,11 @@ class Shot:
             cameras = {number: cameras[number].replace(iso=iso) for number, iso in zip(numbers, isos, strict=True)}
         return {
             f"{name}.{number:04d}": Shot(
-                self.scene, camera, settings.with_(seed=_core._frame_seed(self.seed, number)), self.tone
+                self.scene,
+                camera,
+                settings.with_(seed=_core._frame_seed(self.seed, number)),
+                self.tone,
+                exr_color_space=self.exr_color_space,
             )
             for number, camera in cameras.items()
         }
@@ -157,7 +164,8 @@ class Shot:
         """
         camera = self.camera if self.shake is None else self.camera_at(self.camera.shutter_opens_s)
         settings = self.settings if threads is None else self.settings.with_(threads=threads)
-        return render(self.scene, camera, settings, device=device, progress=progress, on_stop=on_stop)
+        image = render(self.scene, camera, settings, device=device, progress=progress, on_stop=on_stop)
+        return replace(image, tone=self.tone, exr_color_space=self.exr_color_space)
 
 
 def shot_with_words(path: str | os.PathLike[str], words: Mapping[str, str], device: str) -> Shot:

@@ -9,8 +9,11 @@
 #include <vector>
 
 #include "../../image_io/image_file.hpp"
+#include "../../io/files/regular_file.hpp"
+#include "../../io/text/printable.hpp"
 #include "../bindings.hpp"
 #include "python_image.hpp"
+#include "python_view.hpp"
 
 namespace realcam::bindings {
 
@@ -76,8 +79,14 @@ std::vector<image_io::PictureView::Layer> layers_from(const py::dict& layers, co
     return views;
 }
 
-/// Writes a realcam.Image to a file. `film_tone`: true for the tone curve "film", false for "linear".
-void write_picture(const py::bytes& path, const PythonImage& image, bool film_tone) {
+/// Writes a realcam.Image to a file. `tone`: see view_from. `color_space`: of .exr files, a name of kExrColorSpaces.
+void write_picture(const py::bytes& path, const PythonImage& image, const Typed<"str | OcioView", py::object>& tone,
+                   const std::string& color_space) {
+    const std::shared_ptr<const View> view = view_from(tone);
+    const std::optional<ExrColorSpace> exr_color_space = value_named(kExrColorSpaces, color_space);
+    if (!exr_color_space)
+        throw InputError("exr_color_space must be " + one_of(kExrColorSpaces) + "; it is " +
+                         io::in_quotes(color_space));
     const auto exposure = attribute_of<FloatArray>(image, "pixels"), depth = attribute_of<FloatArray>(image, "depth");
     if (exposure.ndim() != 3 || exposure.shape(2) != 3 || depth.ndim() != 2 || depth.shape(0) != exposure.shape(0) ||
         depth.shape(1) != exposure.shape(1))
@@ -93,7 +102,7 @@ void write_picture(const py::bytes& path, const PythonImage& image, bool film_to
     const io::ImageMetadata metadata = metadata_of(image);
     const std::string file = path;
     const Unlocked unlocked;
-    image_io::write_image(picture, file, metadata, film_tone ? ToneCurve::film : ToneCurve::linear, heed_signals);
+    image_io::write_image(picture, file, metadata, *view, *exr_color_space, heed_signals);
 }
 
 /// Returns the metadata of picture files, text by name.
@@ -119,14 +128,30 @@ Typed<"tuple[NDArray[float32], list[tuple[str, str]]]", py::tuple> read_film(con
     return py::make_tuple(exposure, film.entries);
 }
 
-/// Writes 8-bit sRGB values (H, W, 3) to a file.
+/// Writes 8-bit display values (H, W, 3) to a file. `is_srgb`: true if the file declares sRGB.
 void write_codes(const py::bytes& path, const py::array_t<std::uint8_t, py::array::c_style>& codes,
-                 const Entries& entries) {
+                 const Entries& entries, bool is_srgb) {
     if (codes.ndim() != 3 || codes.shape(2) != 3) throw InputError("expected 8-bit values of shape (H, W, 3)");
     const std::string file = path;
     const Unlocked unlocked;
     image_io::write_codes(file, static_cast<int>(codes.shape(1)), static_cast<int>(codes.shape(0)), codes.data(),
-                          entries, heed_signals);
+                          entries, is_srgb, heed_signals);
+}
+
+/// Returns the content of a regular file. Throws InputError, whose message is the reason without the path.
+py::bytes read_file(const PathLike& path, std::uint64_t max_bytes) {
+    const std::string name = path_from(path);
+    std::string content;
+    try {
+        const Unlocked unlocked;
+        if (io::RegularFile(name).size() > max_bytes)
+            throw io::FileError(name, "has more than " + std::to_string(max_bytes >> 20) + " MB");
+        Checkpoint checkpoint(heed_signals);
+        content = io::read_whole_file(name, checkpoint);
+    } catch (const io::FileError& error) {
+        throw InputError(error.reason);
+    }
+    return content;
 }
 
 }  // namespace
@@ -136,12 +161,16 @@ void bind_pictures(py::module_& m) {
           "Internal: use realcam.read_environment. Returns the pixels (H, W, 3) and a list of warnings.");
     m.def("_read_picture", &read_picture, "path"_a,
           "Internal: use realcam.image_file.read_picture. Returns the pixels (H, W, 3) and a list of warnings.");
-    m.def("_write_picture", &write_picture, "path"_a, "image"_a, "film_tone"_a,
-          "Internal: use Image.save. film_tone: True for the tone curve \"film\", False for \"linear\".");
+    m.def("_write_picture", &write_picture, "path"_a, "image"_a, "tone"_a, "exr_color_space"_a,
+          "Internal: use Image.save.");
     m.def("_metadata", &metadata_entries, "image"_a,
           "Internal: use Image.metadata. Returns the metadata of picture files, text by name.");
-    m.def("_write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a,
-          "Internal. Writes 8-bit sRGB values (H, W, 3) with metadata, pairs (name, value), to an image file.");
+    m.def("_write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a, "is_srgb"_a,
+          "Internal. Writes 8-bit display values (H, W, 3) with metadata, pairs (name, value), to an image file. "
+          "is_srgb: True if it declares sRGB.");
+    m.def("_read_file", &read_file, "path"_a, "max_bytes"_a,
+          "Internal. Returns the content of a regular file of at most max_bytes. Raises InputError with the reason.");
+    register_ocio();
     m.def("_read_film", &read_film, "path"_a,
           "Internal. Returns the exposure (H, W, 3) in lux seconds and the metadata, pairs (name, value), of a file.");
 }

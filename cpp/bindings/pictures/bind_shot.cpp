@@ -21,6 +21,7 @@
 #include "../values/short_text.hpp"
 #include "../values/value_methods.hpp"
 #include "owned_session.hpp"
+#include "python_view.hpp"
 
 namespace realcam::bindings {
 
@@ -264,6 +265,7 @@ Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std
     shot::ShotRequest request;
     Camera camera;
     Assembly scene;
+    std::shared_ptr<const View> view;
     std::vector<std::string> notes;
     const shot::PictureReaders readers = picture_readers();
     const std::string name = path_from(path);
@@ -278,6 +280,7 @@ Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std
         request.lens_options.warn = [&](const std::string& note) { notes.push_back(note); };
         shot::resolve_keys(request);
         camera = shot::camera_of(request);
+        view = shot::view_of(request);
         request.lens_options = {};  // its functions refer to local variables
         scene = scene_in_memory ? shot::scene_of(request, *scene_in_memory, readers, heed_signals)
                                 : shot::scene_of(request, readers, heed_signals);
@@ -290,7 +293,9 @@ Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std
         OwnedSession::shared(device).use([&](const auto& session) { meter(shot, request, *session, report); });
     }
     py::dict fields("scene"_a = shot.scene, "camera"_a = shot.camera, "settings"_a = request.settings,
-                    "tone"_a = name_of(request.tone), "keys"_a = py::tuple(py::cast(request.keys)),
+                    "tone"_a = tone_from(*view),
+                    "exr_color_space"_a = name_among(kExrColorSpaces, request.exr_color_space),
+                    "keys"_a = py::tuple(py::cast(request.keys)),
                     "shake"_a = request.shake.is_still() ? std::nullopt : std::optional(request.shake),
                     "iso_follows_s"_a = request.iso_follows_s);
     return py::make_tuple(std::move(fields), request.sampling == shot::Sampling::unspecified);

@@ -50,7 +50,7 @@ Assembly with_valid_static_geometry(const Assembly& scene, Change&& change) {
 /// image. `warnings` receives the image reader's warnings. Throws InputError and ImageFileError.
 Environment environment_from(const py::object& radiance, const std::string& layer, std::vector<std::string>& warnings) {
     if (py::isinstance<py::str>(radiance) || py::hasattr(radiance, "__fspath__"))
-        return picture_readers().environment(path_from(radiance), layer,
+        return picture_readers().environment(path_from(radiance), layer, {},
                                              [&](const std::string& warning) { warnings.push_back(warning); });
     if (!layer.empty()) throw InputError("layer requires that the environment is an OpenEXR file");
     Environment environment;

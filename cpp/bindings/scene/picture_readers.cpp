@@ -12,8 +12,9 @@ shot::PictureReaders picture_readers() {
     return {[](const std::string& path, std::span<const std::uint8_t> bytes) {
                 return image_io::read_image(path, bytes, heed_signals);
             },
-            [](const std::string& path, const std::string& layer, const image_io::WarnOf& warn) {
-                return image_io::read_environment(path, layer, warn, heed_signals);
+            [](const std::string& path, const std::string& layer, const io::ColorConversion& to_rec709,
+               const image_io::WarnOf& warn) {
+                return image_io::read_environment(path, layer, warn, heed_signals, to_rec709);
             }};
 #else
     const auto refuse = [] { throw ImageFileError("this build of realcam cannot read image files"); };
@@ -21,7 +22,7 @@ shot::PictureReaders picture_readers() {
                 refuse();
                 return std::nullopt;
             },
-            [refuse](const std::string&, const std::string&,
+            [refuse](const std::string&, const std::string&, const io::ColorConversion&,
                      const std::function<void(const std::string&)>&) -> Environment {
                 refuse();
                 return {};

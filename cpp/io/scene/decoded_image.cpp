@@ -29,6 +29,26 @@ void set_alpha_to_mean(std::vector<Value>& rgba, Value white) {
         rgba[i + 3] = std::min(static_cast<Value>((rgba[i] + rgba[i + 1] + rgba[i + 2]) / 3), white);
 }
 
+/// Returns the values as fractions of the largest.
+std::vector<float> fractions(const std::vector<std::uint8_t>& codes) {
+    std::vector<float> values(codes.size());
+    std::ranges::transform(codes, values.begin(), [](std::uint8_t code) { return static_cast<float>(code) / 255; });
+    return values;
+}
+
+/// Converts the colours of RGBA values. Negative results, of colours outside the gamut of Rec. 709, and NaN become 0.
+void convert(std::vector<float>& rgba, const ColorConversion& to_rec709) {
+    std::vector<float> rgb;
+    rgb.reserve(rgba.size() / 4 * 3);
+    for (std::size_t i = 0; i < rgba.size(); i += 4) rgb.insert(rgb.end(), &rgba[i], &rgba[i + 3]);
+    to_rec709(rgb);
+    for (std::size_t i = 0, j = 0; i < rgba.size(); ++i)
+        if (i % 4 != 3) {
+            const float value = rgb[j++];
+            rgba[i] = value > 0 ? value : 0.0f;
+        }
+}
+
 /// Converts to linear Rec. 709 by a matrix (DecodedImage::rec709). Negative results, of colours outside its gamut,
 /// become 0.
 void convert_to_rec709(std::vector<float>& rgba, const std::array<double, 9>& rec709) {
@@ -54,6 +74,12 @@ Texture texture_of(DecodedImage image, TextureUse use, std::string name) {
     texture.name = std::move(name);
     texture.width = image.width;
     texture.height = image.height;
+    if (use == TextureUse::colour && image.to_rec709) {
+        if (const auto* codes = std::get_if<std::vector<std::uint8_t>>(&image.rgba)) image.rgba = fractions(*codes);
+        texture.linear_rgba = std::move(std::get<std::vector<float>>(image.rgba));
+        convert(texture.linear_rgba, image.to_rec709);
+        return texture;
+    }
     const bool is_encoded = is_srgb(image, use);
     if (auto* codes = std::get_if<std::vector<std::uint8_t>>(&image.rgba)) {
         texture.encoding = is_encoded ? TextureEncoding::srgb : TextureEncoding::linear;

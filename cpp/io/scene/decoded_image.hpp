@@ -24,6 +24,9 @@ std::string decode_vertex_colours(std::vector<VertexColor>& colours);
 /// True if the alpha of any vertex colour is below 1.
 bool are_transparent(const std::vector<VertexColor>& colours);
 
+/// Function that converts colours in place to linear Rec. 709: red, green and blue of each pixel.
+using ColorConversion = std::function<void(std::span<float> rgb)>;
+
 /// Red, green, blue and alpha of each pixel, row 0 at the top, rows without padding: 4 * width * height values. Alpha
 /// is not premultiplied.
 struct DecodedImage {
@@ -35,6 +38,9 @@ struct DecodedImage {
     bool is_linear = false;
     /// Matrix, by rows, to linear Rec. 709, if the file specifies other primaries.
     std::optional<std::array<double, 9>> rec709 = std::nullopt;
+    /// Conversion of colours from the colour space that the user has specified, in place of `is_linear` and `rec709`;
+    /// 8-bit values are converted as fractions of 255. Empty: none is specified.
+    ColorConversion to_rec709 = {};
 };
 
 /// Limit of the size of textures: 16384 x 16384 pixels, the largest texture of a GPU. A file of a megabyte can claim

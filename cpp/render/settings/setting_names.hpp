@@ -69,6 +69,14 @@ inline constexpr NamedValues<PupilSampling, 4> kPupilSamplings = {{
 inline constexpr NamedValues<LightTracing, 3> kLightTracings = {
     {{"weighted", LightTracing::weighted}, {"off", LightTracing::off}, {"alone", LightTracing::alone}}};
 
+/// Colour space of the colours in OpenEXR files. Its values are linear.
+enum class ExrColorSpace {
+    rec709,  ///< primaries and white of ITU-R BT.709
+    acescg,  ///< primaries AP1 and white of ACES (SMPTE ST 2065-1, S-2014-004)
+};
+inline constexpr NamedValues<ExrColorSpace, 2> kExrColorSpaces = {
+    {{"rec709", ExrColorSpace::rec709}, {"acescg", ExrColorSpace::acescg}}};
+
 inline const char* name_of(CameraModel model) {
     return name_among(kCameraModels, model);
 }

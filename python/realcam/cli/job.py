@@ -246,7 +246,7 @@ def _write_pictures(job: Job, targets: dict[str, list[Path]], device: str | None
             bar(done / len(targets))
             image = job.image(name, device=device)
             for path in paths:
-                image.save(path, tone=job.tone(name))
+                image.save(path)
                 options.say_written(path, quiet)
 
 
@@ -263,7 +263,7 @@ def _developed(job: Job, device: str | None, bar: Callable[[float], bool]) -> It
     """Yields all pictures in order, as 8-bit sRGB arrays."""
     for done, name in enumerate(job.names):
         bar(done / len(job.names))
-        yield job.image(name, device=device).developed(tone=job.tone(name))
+        yield job.image(name, device=device).developed()
 
 
 def _tile(text: str | None) -> tuple[int, int] | None:

@@ -15,6 +15,7 @@ from .._core import InputError
 from ..analysis.style import new_figure, themed
 from ..drawing.figure_files import check_figure_target, save_figure
 from ..image import Image
+from ..ocio import OcioView
 
 DPI = 160  # pixels of a picture per inch of the sheet
 FONT_PT = 7.0  # size of the labels
@@ -25,7 +26,7 @@ def save_sheet(
     path: str | os.PathLike[str],
     columns: int = 3,
     *,
-    tone: str = "film",
+    tone: str | OcioView = "film",
     theme: str = "light",
 ) -> None:
     """Writes (label, image) pairs as .png, .jpg, .tif, .webp, .svg or .pdf, without resampling if all images have the

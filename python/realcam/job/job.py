@@ -12,6 +12,7 @@ from pathlib import Path
 from .._core import InputError
 from ..files import remove_leftovers, system_name
 from ..image import Image
+from ..ocio import OcioView
 from ..shot import Shot
 from .executing import Part, check_part, do_all
 from .folder import JobFolder
@@ -126,10 +127,17 @@ class Job:
             raise InputError(f"{self.path}: {missing}; run realcam job work to render them")
         film, stored = worker.film(shot), worker.shot(shot)
         image = worker.session(shot)._image_of(film.film)
-        return replace(image, settings=stored.settings, plan=stored.plan, shortfall=film.shortfall)
+        return replace(
+            image,
+            settings=stored.settings,
+            plan=stored.plan,
+            shortfall=film.shortfall,
+            tone=stored.tone,
+            exr_color_space=stored.exr_color_space,
+        )
 
-    def tone(self, name: str | None = None) -> str:
-        """The shot's tone curve, for Image.save."""
+    def tone(self, name: str | None = None) -> str | OcioView:
+        """The shot's tone curve or view, which image() has, too."""
         return Worker(self._folder).shot(self._index_of(name)).tone
 
     def _index_of(self, name: str | None) -> int:

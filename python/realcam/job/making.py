@@ -16,7 +16,7 @@ from ..shot import Shot
 from .engine import Engine, probe_of
 from .folder import JOB_FILE, JobFolder, check_names
 from .units import ShotRecord, checked_tile, tile_for
-from .worker import pack_values
+from .worker import pack_values, tone_text
 
 
 def make_folder(
@@ -71,7 +71,9 @@ def _written(path: Path, shots: Mapping[str, Shot], device: str, tile: tuple[int
             scenes.append((shot.scene, scene))
             if scene not in probes:  # another Scene object may have the same content
                 probes[scene] = probe_of(session)
-        content = pack_values(session.camera, session.settings, tone=shot.tone, plan=plan)
+        content = pack_values(
+            session.camera, session.settings, tone=tone_text(shot.tone), plan=plan, exr_color_space=shot.exr_color_space
+        )
         write_archive(path / "shots" / f"{index:05d}.npz", content)
         spp = None if session.settings.spp == "auto" else int(session.settings.spp)
         resolution = session.camera.film.resolution

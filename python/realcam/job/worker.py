@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 import threading
 import warnings
@@ -16,6 +17,7 @@ from .. import _core
 from .._core import Camera, InputError, RealcamError, RenderSettings, Scene
 from ..archive import packed, read_archive, write_archive
 from ..film_part import AccumulatedFilm
+from ..ocio import BUILT_IN, OcioView
 from ..pickling import described, from_description
 from ..session import Session
 from .engine import probe_of
@@ -32,8 +34,35 @@ class StoredShot:
 
     camera: Camera
     settings: RenderSettings
-    tone: str  #: tone curve
+    tone: str | OcioView
     plan: str  #: description of the plan, for the picture
+    exr_color_space: str
+
+
+def tone_text(tone: str | OcioView) -> str:
+    """Returns a tone curve or a view as text. Raises InputError for a configuration that is a file, because a job reads
+    no files outside of its folder."""
+    if not isinstance(tone, OcioView):
+        return tone
+    if not tone.config.startswith(BUILT_IN):
+        raise InputError(
+            f"{tone.config}: a job stores no configuration files; use a built-in one ({BUILT_IN}...), or give the view "
+            "to Image.save when the job is finished"
+        )
+    return json.dumps([tone.config, tone.display, tone.view])
+
+
+def _tone_from(text: str) -> str | OcioView:
+    """Returns the tone curve or view of tone_text. Raises InputError."""
+    if not text.startswith("["):
+        return text
+    try:
+        config, display, view = json.loads(text)
+        if config.startswith(BUILT_IN):
+            return OcioView(config, display, view)
+    except (ValueError, AttributeError, RecursionError):
+        pass
+    raise InputError("its view is malformed")
 
 
 def pack_values(*values: Any, **more: str) -> bytes:
@@ -130,9 +159,11 @@ class Worker:
         values = read_values(path, record.digest)
         try:
             camera, settings = values["Camera"], values["RenderSettings"].with_(threads=self._threads)
-            stored = StoredShot(camera, settings, values["tone"], values["plan"])
+            stored = StoredShot(camera, settings, _tone_from(values["tone"]), values["plan"], values["exr_color_space"])
         except KeyError:
             raise InputError(f"{path}: this file is malformed") from None
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
         spp = None if settings.spp == "auto" else settings.spp
         if (camera.film.resolution, spp) != (record.resolution, record.spp):
             raise InputError(f"{path}: its resolution or number of samples differs from job.json")

@@ -11,6 +11,7 @@ from typing import Any
 from .._core import InputError, Lens, LensFileError, Plan, RealcamError, RenderSettings
 from ..image import Image
 from ..number_text import counted, duration_text
+from ..ocio import OcioView
 from ..section.cut import PLANES
 from ..shot import Shot
 from ..tolerance import random_copy
@@ -43,6 +44,7 @@ class LensBench:
 
     def __init__(self, shot: Shot, *, device: str = "auto", noise_codes: float = 1.0) -> None:
         self.shot, self._device = shot, device
+        self.tone = shot.tone  #: develops the pictures
         self.listeners = Listeners()
         self.controls = CameraControls.of(shot.camera)
         self.history = History(self.controls.mount)
@@ -256,6 +258,14 @@ class LensBench:
         self.noise_codes = codes
         self._request_pictures()
 
+    def set_view(self, display: str, view: str) -> None:
+        """Sets the view that develops the pictures. Raises InputError if the configuration does not have it, or if the
+        shot has no configuration of OpenColorIO."""
+        if not isinstance(self.tone, OcioView):
+            raise InputError("the shot has no configuration of OpenColorIO (--ocio)")
+        self.tone = replace(self.tone, display=display, view=view)
+        self._request_pictures()
+
     def set_denoising(self, is_on: bool) -> None:
         """Switches denoising of pictures that are still being refined. Raises InputError without a denoiser."""
         if is_on and self.why_no_denoiser:
@@ -408,7 +418,7 @@ class LensBench:
         return PictureRequest(
             camera=controls.camera,
             settings=self._settings(self.switches.restricted_to_model(controls.model)),
-            tone=self.shot.tone,
+            tone=self.tone,
             is_automatic=controls.is_automatic,
             compensation_ev=controls.compensation_ev,
             noise_codes=self.noise_codes,

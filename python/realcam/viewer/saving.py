@@ -15,6 +15,7 @@ import tomlkit
 from .._core import InputError, Lens, RenderSettings, Sensor, lens_names
 from .._core import _shot_keys as shot_keys
 from ..image import Image
+from ..ocio import BUILT_IN, OcioView
 from .camera_controls import CameraControls
 from .shot_source import CALIBRATION_FILES, CALIBRATION_KEYS, ShotSource
 
@@ -35,7 +36,7 @@ def check_suffix(what: str, name: str) -> None:
         raise InputError(f'"{name:.80}": expected a {what} file whose name ends in {expected}')
 
 
-def picture_content(image: Image, name: str, tone: str) -> bytes:
+def picture_content(image: Image, name: str, tone: str | OcioView) -> bytes:
     """Returns the content of a .png, .jpg, .exr, or of a .dng as recorded by an ideal sensor. Raises InputError and
     ImageFileError."""
     check_suffix("picture", name)
@@ -67,11 +68,13 @@ def lens_content(lens: Lens, name: str) -> tuple[bytes, list[str]]:
     return lens._file_content(name)
 
 
-def shot_contents(source: ShotSource, controls: CameraControls, effects: list[str], path: Path) -> dict[Path, bytes]:
+def shot_contents(
+    source: ShotSource, controls: CameraControls, effects: list[str], path: Path, tone: str | OcioView | None = None
+) -> dict[Path, bytes]:
     """Returns the contents of the files to write: the current shot, and its lens unless it is a bundled one.
 
     effects: in the notation of shot files. path: of the shot file; relative paths in the shot start there. Keys that
-    the bench does not change are copied from the source. Raises InputError.
+    the bench does not change are copied from the source. tone: of the bench; None: the source's. Raises InputError.
     """
     check_suffix("shot", path.name)
     shot: Any = tomlkit.parse(source.text)
@@ -83,6 +86,12 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
                 table[key] = os.path.relpath(source.folder / str(table[key]), path.absolute().parent)
     contents = {}
     values = {**controls.shot_values(), "effects": effects}
+    if isinstance(tone, OcioView):
+        config = tone.config
+        if not config.startswith(BUILT_IN):
+            config = os.path.relpath(config, path.absolute().parent)
+        values |= {"ocio": config, "display": tone.display, "view": tone.view}
+        shot.pop("tone", None)
     lens = controls.lens
     if lens.name in lens_names() and _is_bundled(lens):
         values["lens"] = lens.name

@@ -182,7 +182,7 @@ TEST_CASE("PNG is developed and says how it was taken") {
     const std::string path = folder / "picture.PNG";
     const Image image = test_image();
     for (const ToneCurve tone : {ToneCurve::film, ToneCurve::linear}) {
-        write_image(view_of(image), path, test_metadata(), tone);
+        write_image(view_of(image), path, test_metadata(), ToneView(tone));
         CHECK(folder.file_count() == 1);
         const std::optional decoded = read_image(path, {});
         REQUIRE(decoded);

@@ -141,6 +141,7 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
         lambda: rc.Rig.stereo(camera(), baseline_m=0.1),
         lambda: rc.Rig({"a": camera()}, np.stack([np.eye(4)] * 2), (0, 1)),
     ],
+    "OcioView": [lambda: rc.OcioView("ocio://default"), lambda: rc.OcioView("ocio://default", view="Raw")],
     "RawImage": [lambda: rc.Sensor.load().expose(image()), lambda: rc.Sensor.load().expose(image(), seed=1)],
     "FilmPart": [lambda: session().expose((2, 1, 3, 4), 0, 2), lambda: session().expose((2, 1, 3, 4), 2, 2)],
     "Image": [

@@ -10,6 +10,7 @@ from typing import Any
 from nicegui import ui
 from nicegui.events import GenericEventArguments
 
+from ...ocio import OcioView
 from ...photography import SharpRange
 from ..ring_scales import ISO, SHUTTER_S, Ring
 from .elements import RingSlider, show_choice
@@ -127,6 +128,13 @@ class CameraPanel:
         if self._bench.why_no_denoiser:
             self._denoise.disable()
             ui.label(self._bench.why_no_denoiser).classes("rc-note").props('data-testid="why-no-denoiser"')
+        if isinstance(self._bench.tone, OcioView):
+            self._view = self._choice(
+                "View",
+                {},
+                lambda value: self._run(self._bench.set_view, *value),
+                "View of the OpenColorIO configuration, which develops the picture in place of a tone curve",
+            )
         self._film = self._choice(
             "Film",
             FILMS,
@@ -185,6 +193,9 @@ class CameraPanel:
         noise = self._bench.noise_codes
         show_choice(self._noise, _noise_texts(noise), noise)
         self._denoise.set_value(self._bench.denoises)
+        if isinstance(tone := self._bench.tone, OcioView):
+            views = {(display, view): f"{view}, {display}" for display in tone.views for view in tone.views[display]}
+            show_choice(self._view, views, (tone.display, tone.view))
         size = now.film.width_mm, now.film.height_mm
         texts = FILMS if size in FILMS else {**FILMS, size: f"{size[0]:g} × {size[1]:g} mm"}
         show_choice(self._film, dict(texts), size)

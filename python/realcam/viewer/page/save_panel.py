@@ -144,12 +144,12 @@ class SavePanel:
             content, left_out = lens_content(bench.controls.set_lens, path.name)
             return {path: content}, left_out
         effects = bench.switches.restricted_to_model(bench.controls.model).as_specs()
-        return shot_contents(self._source, bench.controls, effects, path), []
+        return shot_contents(self._source, bench.controls, effects, path, bench.tone), []
 
     async def _picture(self, name: str) -> bytes:
         """Returns the file content of the picture as shown. Raises Cancelled."""
         bench = self._bench
-        return await self._window.do(lambda: picture_content(bench.image(), name, bench.shot.tone))
+        return await self._window.do(lambda: picture_content(bench.image(), name, bench.tone))
 
     async def _refined(self) -> None:
         """Waits until the picture has the requested noise, or the user chooses to save it at once. Raises InputError if

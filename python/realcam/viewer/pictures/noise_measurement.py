@@ -8,7 +8,7 @@ from collections import deque
 import numpy as np
 from numpy.typing import NDArray
 
-from ..._core import develop
+from ...ocio import OcioView, develop
 
 _TILES = 16  # tiles of the picture along each side
 _ROUNDING = 1 / 6  # variance of the difference of two rounded 8-bit codes
@@ -37,7 +37,7 @@ class NoiseMeasurement:
         if self.is_doubled(samples):
             self._doublings.append(self._newest)
 
-    def codes(self, exposure_time_s: float, iso: float, tone: str) -> float | None:
+    def codes(self, exposure_time_s: float, iso: float, tone: str | OcioView) -> float | None:
         """RMS noise of the developed picture in 8-bit codes; None if there are too few samples.
 
         The mean of n samples has the variance s^2 / n. The difference between the means of the first m and of all n
@@ -47,7 +47,7 @@ class NoiseMeasurement:
         squares = self._squares(exposure_time_s, iso, tone)
         return None if squares is None else math.sqrt(max(0.0, float(np.mean(squares))))
 
-    def tiles(self, exposure_time_s: float, iso: float, tone: str) -> list[list[float]] | None:
+    def tiles(self, exposure_time_s: float, iso: float, tone: str | OcioView) -> list[list[float]] | None:
         """RMS noise as from `codes` of each of _TILES x _TILES tiles of the picture, or of each pixel if it has
         fewer."""
         squares = self._squares(exposure_time_s, iso, tone)
@@ -61,7 +61,7 @@ class NoiseMeasurement:
         rows: list[list[float]] = np.sqrt(np.maximum(0, means)).round(1).tolist()
         return rows
 
-    def _squares(self, exposure_time_s: float, iso: float, tone: str) -> NDArray[np.float32] | None:
+    def _squares(self, exposure_time_s: float, iso: float, tone: str | OcioView) -> NDArray[np.float32] | None:
         """Estimates of the variance of each pixel in 8-bit codes, (height, width, 3); some are negative. None: too few
         samples."""
         if self._newest is None or len(self._doublings) < 2:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ..._core import Camera, RenderSettings, RenderStats
+from ...ocio import OcioView
 
 MAX_SPP = 4096  # samples per pixel at which refinement ends regardless of the noise
 
@@ -15,7 +16,7 @@ class PictureRequest:
 
     camera: Camera
     settings: RenderSettings = field(default_factory=lambda: RenderSettings(effects=(), max_bounces=1))
-    tone: str = "film"
+    tone: str | OcioView = "film"
     is_automatic: bool = False  #: automatic exposure sets the exposure time
     compensation_ev: float = 0.0
     noise_codes: float = 1.0  #: RMS noise in 8-bit codes to which the picture is refined

@@ -11,10 +11,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..._core import Camera, LiveFrame, develop
+from ..._core import Camera, LiveFrame
 from ...denoiser import GUIDES
 from ...image import Image
 from ...live_view import LiveView
+from ...ocio import OcioView, develop
 from .growing_picture import Arrays, GrowingPicture
 from .light_meter import metered_exposure_lx_s, middle_grey_lx_s
 from .pace import Pace
@@ -68,7 +69,9 @@ class PictureTaker:
         """Adds spp samples per pixel, and returns all samples developed with the current exposure, 8-bit."""
         request, camera = picture.request, self.camera(picture)
         start = time.perf_counter()
-        frame = self._live.shoot(camera, picture.settings(), spp=spp, tone=request.tone)
+        is_developed_here = isinstance(request.tone, OcioView)
+        tone = "film" if isinstance(request.tone, OcioView) else request.tone
+        frame = self._live.shoot(camera, picture.settings(), spp=spp, tone=tone)
         if picture.stored_arrays:
             self._wait_for(frame, picture)
         codes = frame.codes
@@ -78,7 +81,8 @@ class PictureTaker:
         picture.samples, picture.exposure_time_s = frame.samples, camera.exposure_time_s
         picture.stored_arrays = self._live_arrays() if self.pace.was_slow(seconds) else None
         # The exposure may have been changed during this frame.
-        return codes if picture.request is request else self._developed_here(picture)
+        is_outdated = picture.request is not request
+        return self._developed_here(picture) if is_outdated or is_developed_here else codes
 
     def store_arrays(self, picture: GrowingPicture) -> None:
         """Stores the last frame, for use during a slow one."""
@@ -97,7 +101,8 @@ class PictureTaker:
 
     def developed(self, picture: GrowingPicture) -> NDArray[np.uint8]:
         """Returns the existing samples developed with the current exposure."""
-        if not picture.stored_arrays and math.prod(picture.size) > _FEW_PIXELS:
+        is_view = isinstance(picture.request.tone, OcioView)
+        if not picture.stored_arrays and not is_view and math.prod(picture.size) > _FEW_PIXELS:
             return self.shoot(picture, 1)  # the device takes a sample and develops in less time
         return self._developed_here(picture)
 
