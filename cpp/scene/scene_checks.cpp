@@ -87,6 +87,7 @@ public:
         check_textures();
         check_lights();
         check_environment();
+        check_air();
     }
 
 private:
@@ -233,6 +234,15 @@ private:
         if (!std::all_of(e.pixels.begin(), e.pixels.end(), [](Color c) { return is_between_0_and(c, kMaxRadiance); })) {
             fail("environment: radiance must lie between 0 and 1e20 cd/m^2 in every pixel");
         }
+    }
+
+    void check_air() const {
+        const Air& air = scene_.air;
+        if (!is_between_0_and(air.extinction, 1e6f)) fail("air: the extinction must lie between 0 and 1e6 per metre");
+        if (!is_between_0_and(air.albedo, 1)) fail("air: the albedo must lie between 0 and 1");
+        if (!(std::fabs(air.anisotropy) <= 0.99f)) fail("air: the anisotropy must lie between -0.99 and 0.99");
+        if (air.margin_m && !(*air.margin_m >= 0 && *air.margin_m <= 1e12))
+            fail("air: the margin must lie between 0 and 1e12 m");
     }
 
     const Scene& scene_;
