@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "../error.hpp"
 #include "../math/color.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -24,5 +25,11 @@ struct Air {
 /// Product of extinction coefficient and visibility, -ln 0.02: the distance at which the contrast of a black object
 /// against the horizon is 2% (Koschmieder 1924).
 inline constexpr double kKoschmieder = 3.912;
+
+/// Returns the extinction coefficient per metre of air with a visibility. Throws InputError unless it is positive.
+inline Color extinction_of_visibility(double visibility_m) {
+    if (!(visibility_m > 0)) throw InputError("the visibility must be a positive number of metres");
+    return grey(static_cast<float>(kKoschmieder / visibility_m));
+}
 
 }  // namespace REALCAM_NAMESPACE

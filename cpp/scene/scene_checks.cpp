@@ -72,6 +72,16 @@ void check_parent(const Assembly& scene, std::size_t instance) {
                          "; expected an instance before it in the list");
 }
 
+/// Returns why the air is invalid; empty if it is valid.
+std::string air_error(const Air& air) {
+    if (!is_between_0_and(air.extinction, 1e6f)) return "the air's extinction must lie between 0 and 1e6 per metre";
+    if (!is_between_0_and(air.albedo, 1)) return "the air's albedo must lie between 0 and 1";
+    if (!(std::fabs(air.anisotropy) <= 0.99f)) return "the air's anisotropy must lie between -0.99 and 0.99";
+    if (air.margin_m && !(*air.margin_m >= 0 && *air.margin_m <= 1e12))
+        return "the air's margin must lie between 0 and 1e12 m";
+    return "";
+}
+
 /// Checks one Scene; see validate.
 class Checker {
 public:
@@ -237,12 +247,7 @@ private:
     }
 
     void check_air() const {
-        const Air& air = scene_.air;
-        if (!is_between_0_and(air.extinction, 1e6f)) fail("air: the extinction must lie between 0 and 1e6 per metre");
-        if (!is_between_0_and(air.albedo, 1)) fail("air: the albedo must lie between 0 and 1");
-        if (!(std::fabs(air.anisotropy) <= 0.99f)) fail("air: the anisotropy must lie between -0.99 and 0.99");
-        if (air.margin_m && !(*air.margin_m >= 0 && *air.margin_m <= 1e12))
-            fail("air: the margin must lie between 0 and 1e12 m");
+        if (const std::string why = air_error(scene_.air); !why.empty()) fail(why);
     }
 
     const Scene& scene_;
@@ -264,6 +269,10 @@ void validate(const Scene& scene, const std::string& file, bool may_be_empty) {
 void validate(const Texture& texture) {
     Checkpoint never_stops;
     if (const std::string why = texture_error(texture, never_stops); !why.empty()) throw InputError("a texture " + why);
+}
+
+void validate(const Air& air) {
+    if (const std::string why = air_error(air); !why.empty()) throw InputError(why);
 }
 
 void SceneChecks::check(const Assembly& scene, const std::string& file, const KeepGoing& keep_going) {
