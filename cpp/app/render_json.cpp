@@ -44,6 +44,23 @@ void write_camera(JsonWriter& json, const Camera& camera) {
     json.end();
 }
 
+/// Writes the air; null if it is clear.
+void write_air(JsonWriter& json, const Air& air) {
+    json.key("air");
+    if (!air.is_present()) {
+        json.null();
+        return;
+    }
+    const auto write_color = [&](const char* key, Color c) {
+        write_point(json, key, {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)});
+    };
+    json.begin_object();
+    write_color("extinction_per_m", air.extinction);
+    write_color("albedo", air.albedo);
+    json.key("anisotropy").number(static_cast<double>(air.anisotropy));
+    json.end();
+}
+
 void write_exposure(JsonWriter& json, const shot::Shot& shot, const Image& image) {
     json.key("exposure").begin_object();
     json.key("exposure_time_s").number(shot.camera.exposure_time_s).key("iso").number(shot.camera.iso);
@@ -96,6 +113,7 @@ std::string render_as_json(const shot::Shot& shot, const shot::ShotRequest& requ
     write_texts(json, "pictures", pictures);
     json.key("scene").text(request.scene).key("triangles").number(static_cast<double>(shot.scene.triangle_count()));
     json.key("has_daylight").truth(shot.has_daylight);
+    write_air(json, shot.scene.static_geometry->air);
     write_lens(json, shot.camera.lens);
     write_camera(json, shot.camera);
     write_exposure(json, shot, image);

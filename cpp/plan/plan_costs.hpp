@@ -55,32 +55,49 @@ inline double largest_difference(const std::vector<double>& a, const std::vector
     return largest;
 }
 
+/// Camera and settings of small pictures.
+struct SmallShot {
+    Camera camera;
+    RenderSettings settings;
+
+    SmallShot(const Camera& of, const RenderSettings& settings_of) : camera(of), settings(settings_of) {
+        camera.film = with_long_side(camera.film, kLongSide);
+        // A pinhole camera shows the differences faster, if the lens has an axis.
+        if (const LensSystem on_axis = centred(camera.lens); on_axis.is_rotational()) {
+            camera.lens = on_axis;
+            camera.model = CameraModel::pinhole;
+        }
+        settings.spp = kSamples;
+        settings.noise.reset();
+        settings.effects = {};
+        settings.pupil_sampling = PupilSampling::outline;
+        settings.remove_spectra();
+        settings.layers = {};
+    }
+};
+
+/// Returns the scene with clear air.
+inline Assembly without_air(const Assembly& scene) {
+    return with_static_geometry(scene, [](Scene& changed) { changed.air = {}; });
+}
+
 }  // namespace plan_bounces_detail
 
 /// Sets the plan's number of bounces, and adds the decision: the least number with which every square of a small
 /// picture is darker than with all bounces by less than kMargin times the threshold in codes. `settings`: those of the
 /// picture. Throws the errors of take_picture.
-inline void plan_bounces(Session& session, const Assembly& scene, Camera camera, RenderSettings settings, Plan& plan,
-                         const Progress& progress) {
+inline void plan_bounces(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                         Plan& plan, const Progress& progress) {
     using namespace plan_bounces_detail;
     if (settings.max_bounces) {
         plan.max_bounces = *settings.max_bounces;
         return;
     }
     const double threshold = settings.thresholds.codes;
-    camera.film = with_long_side(camera.film, kLongSide);
-    // A pinhole camera shows the differences faster, if the lens has an axis.
-    if (const LensSystem on_axis = centred(camera.lens); on_axis.is_rotational()) {
-        camera.lens = on_axis;
-        camera.model = CameraModel::pinhole;
-    }
-    settings.spp = kSamples;
-    settings.noise.reset();
-    settings.effects = {};
-    settings.pupil_sampling = PupilSampling::outline;
-    settings.remove_spectra();
-    settings.layers = {};
-    const auto with = [&](int bounces) { return small_picture(session, scene, camera, settings, bounces, progress); };
+    const SmallShot small(camera, settings);
+    const auto with = [&](int bounces) {
+        return small_picture(session, scene, small.camera, small.settings, bounces, progress);
+    };
     const std::vector<double> all = with(kMaxBounces);
     const double indirect = largest_difference(with(0), all);
     double missing = indirect, missing_with_fewer = indirect;
@@ -98,6 +115,21 @@ inline void plan_bounces(Session& session, const Assembly& scene, Camera camera,
                                : "with " + counted(plan.max_bounces, "bounce") + " the picture lacks " +
                                      codes(missing) + ", with fewer " + codes(missing_with_fewer) +
                                      " (half the threshold is allowed), with direct light alone " + codes(indirect)});
+}
+
+/// Adds the change of the picture by the air, if there is any, with the plan's number of bounces. `settings`: those of
+/// the picture. Throws the errors of take_picture.
+inline void plan_air(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                     Plan& plan, const Progress& progress) {
+    using namespace plan_bounces_detail;
+    if (!scene.static_geometry->air.is_present()) return;
+    const SmallShot small(camera, settings);
+    const auto of = [&](const Assembly& with_air) {
+        return small_picture(session, with_air, small.camera, small.settings, plan.max_bounces, progress);
+    };
+    const double change = largest_difference(of(scene), of(without_air(scene)));
+    plan.decisions.push_back({"air", change, SizeUnit::codes, settings.thresholds.codes, true, DecidedBy::user,
+                              std::nullopt, "the air changes the picture by " + counted(change, "code", 2)});
 }
 
 namespace measure_times_detail {
@@ -136,13 +168,14 @@ inline void measure_times(Session& session, const Assembly& scene, Camera camera
     settings.max_bounces = plan.max_bounces;
     EffectChoice no_effects;
     no_effects.motion_blur = no_effects.rolling_shutter = false;
-    const auto set = [&](const EffectChoice& effects) {
+    const auto set_scene = [&](const Assembly& used_scene, const EffectChoice& effects) {
         settings.effects = effects;
         RenderSettings used = settings;
         if (!effects.have_wavelengths()) used.remove_spectra();
-        session.set(scene, camera, used, keep_going);
+        session.set(used_scene, camera, used, keep_going);
         session.add(1, progress);  // warm-up: work that a device does only once
     };
+    const auto set = [&](const EffectChoice& effects) { set_scene(scene, effects); };
     set(no_effects);
     // The film grows until a run takes kMinRun_s: a sample of a small film costs nearly as much as one of the whole
     // picture. On a fast device it grows to the whole picture, where the use of memory counts, too.
@@ -164,6 +197,11 @@ inline void measure_times(Session& session, const Assembly& scene, Camera camera
             set(no_effects);
             plan.decisions[k].time = std::max(base_s / shortest_run_s(session, spp, progress) - 1, 0.0);
             settings.max_bounces = plan.max_bounces;
+            continue;
+        }
+        if (plan.decisions[k].name == "air") {
+            set_scene(plan_bounces_detail::without_air(scene), no_effects);
+            plan.decisions[k].time = std::max(base_s / shortest_run_s(session, spp, progress) - 1, 0.0);
             continue;
         }
         const EffectInfo* effect = find_effect(plan.decisions[k].name);

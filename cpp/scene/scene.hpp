@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "air.hpp"
 #include "scene_view.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -53,6 +54,7 @@ struct Scene {
     std::vector<ScenePointLight> points;
     std::vector<SunLight> suns;
     Environment environment;
+    Air air;
     /// Problems that the reader tolerated, such as a missing texture, for the caller to show.
     std::vector<std::string> warnings;
 

@@ -72,6 +72,16 @@ void check_parent(const Assembly& scene, std::size_t instance) {
                          "; expected an instance before it in the list");
 }
 
+/// Returns why the air is invalid; empty if it is valid.
+std::string air_error(const Air& air) {
+    if (!is_between_0_and(air.extinction, 1e6f)) return "the air's extinction must lie between 0 and 1e6 per metre";
+    if (!is_between_0_and(air.albedo, 1)) return "the air's albedo must lie between 0 and 1";
+    if (!(std::fabs(air.anisotropy) <= 0.99f)) return "the air's anisotropy must lie between -0.99 and 0.99";
+    if (air.margin_m && !(*air.margin_m >= 0 && *air.margin_m <= 1e12))
+        return "the air's margin must lie between 0 and 1e12 m";
+    return "";
+}
+
 /// Checks one Scene; see validate.
 class Checker {
 public:
@@ -87,6 +97,7 @@ public:
         check_textures();
         check_lights();
         check_environment();
+        check_air();
     }
 
 private:
@@ -235,6 +246,10 @@ private:
         }
     }
 
+    void check_air() const {
+        if (const std::string why = air_error(scene_.air); !why.empty()) fail(why);
+    }
+
     const Scene& scene_;
     const std::string& file_;
     Checkpoint& checkpoint_;
@@ -254,6 +269,10 @@ void validate(const Scene& scene, const std::string& file, bool may_be_empty) {
 void validate(const Texture& texture) {
     Checkpoint never_stops;
     if (const std::string why = texture_error(texture, never_stops); !why.empty()) throw InputError("a texture " + why);
+}
+
+void validate(const Air& air) {
+    if (const std::string why = air_error(air); !why.empty()) throw InputError(why);
 }
 
 void SceneChecks::check(const Assembly& scene, const std::string& file, const KeepGoing& keep_going) {

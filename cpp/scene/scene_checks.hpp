@@ -32,6 +32,9 @@ void validate(const Scene& scene, const std::string& file = {}, bool may_be_empt
 /// Throws InputError if a texture has the wrong number of texels, or texels that are negative or not finite.
 void validate(const Texture& texture);
 
+/// Throws InputError if a property of the air is out of range.
+void validate(const Air& air);
+
 /// Incremental validation of successive scenes: static geometry, objects and transforms, skipping all parts of the
 /// previous scene, which it keeps in memory.
 class SceneChecks {

@@ -119,6 +119,16 @@ struct VertexColor {
     constexpr bool operator==(const VertexColor&) const = default;
 };
 
+/// Homogeneous participating medium that fills a box, except for the interiors of glass (Air).
+struct AirView {
+    Color extinction = {0, 0, 0};  ///< per metre; black: no air
+    Color scattering = {0, 0, 0};  ///< scattering coefficient per metre
+    float anisotropy = 0;  ///< mean cosine of the scattering angle
+    Vec3f low = {0, 0, 0}, high = {0, 0, 0};  ///< corners of the box; -kFarAway and kFarAway: unlimited
+
+    REALCAM_INLINE bool is_present() const { return !is_black(extinction); }
+};
+
 // Every array of the following structs must also be listed in scene_arrays.hpp.
 
 /// Triangle mesh with its materials and textures.
@@ -149,8 +159,8 @@ struct InstanceView {
     std::int32_t first_key, key_count;  ///< keys of its motion in InstancesView::keys; a count of 0: it does not move
 };
 
-/// Part of a scene that depends on instance transforms: the instances, the lights that move with them, and the scene
-/// kind, which tells whether anything moves.
+/// Part of a scene that depends on instance transforms: the instances, the lights that move with them, the scene kind,
+/// which tells whether anything moves, and the air, whose box encloses the instances.
 struct InstancesView {
     SceneKind kind;
     const InstanceView* instances;
@@ -164,6 +174,7 @@ struct InstancesView {
     const std::uint64_t* light_trails;
     const float* leaf_probabilities;  ///< for the same lights: probability of the light within its leaf
     std::int32_t instance_count, key_count, point_count, area_count, light_node_count, leaf_light_count;
+    AirView air;
 };
 
 /// Complete scene: static geometry, objects in frames of their own, and lights.

@@ -261,7 +261,7 @@ namespace {
 Assembly completed(const ShotRequest& request, Assembly scene, const PictureReaders& readers,
                    const KeepGoing& keep_going) {
     scene = with_additions(std::move(scene), request.additions, readers, keep_going);
-    if (request.texture.empty() && !request.chooses_environment()) return scene;
+    if (request.texture.empty() && !request.chooses_environment() && !request.air) return scene;
     return with_static_geometry(std::move(scene), [&](Scene& changed) {
         if (!request.texture.empty()) add_texture(changed, request.texture, readers);
         if (!request.environment_file.empty())
@@ -273,6 +273,7 @@ Assembly completed(const ShotRequest& request, Assembly scene, const PictureRead
             const Vec3f rgb = *request.environment_cd_m2;
             changed.environment.constant = {rgb.x, rgb.y, rgb.z};
         }
+        if (request.air) changed.air = *request.air;
         if (request.chooses_environment())
             changed.environment = realcam::changed(std::move(changed.environment), request.environment_change);
     });

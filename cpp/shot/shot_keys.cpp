@@ -6,6 +6,7 @@
 
 #include "../io/text/printable.hpp"
 #include "../render/settings/setting_names.hpp"
+#include "../scene/scene_checks.hpp"
 #include "read_camera_keys.hpp"
 #include "shot_table.hpp"
 
@@ -104,6 +105,36 @@ void to_environment(Table t, Key key, Request r) {
     }
     const auto radiance = static_cast<float>(*t.number(key.name));
     r.environment_cd_m2 = {radiance, radiance, radiance};
+}
+
+/// Reads the visibility of the air, or a table [air].
+void to_air(Table t, Key key, Request r) {
+    const toml::node* node = t.find(key.name);
+    Air air;
+    const auto read_visibility = [&](Table table, const char* name) {
+        const double visibility_m = *table.number(name);
+        table.checked(name, [&] { air.extinction = extinction_of_visibility(visibility_m); });
+    };
+    if (!node->is_table()) {
+        read_visibility(t, key.name);
+        r.air = air;
+        return;
+    }
+    const ShotTable table(*node->as_table(), t.file());
+    table.allow({"visibility_m", "extinction_per_m", "albedo", "anisotropy", "margin_m"});
+    const auto color = [](Vec3d v) { return Color{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; };
+    const auto extinction = table.number_or_three("extinction_per_m");
+    if (extinction.has_value() == (table.find("visibility_m") != nullptr))
+        table.fail("expected either \"visibility_m\" or \"extinction_per_m\"");
+    if (extinction)
+        air.extinction = color(*extinction);
+    else
+        read_visibility(table, "visibility_m");
+    if (const auto albedo = table.number_or_three("albedo")) air.albedo = color(*albedo);
+    if (const auto anisotropy = table.number("anisotropy")) air.anisotropy = static_cast<float>(*anisotropy);
+    air.margin_m = table.number("margin_m");
+    table.checked(nullptr, [&] { validate(air); });
+    r.air = air;
 }
 
 void to_model(Table t, Key key, Request r) {
@@ -251,6 +282,9 @@ std::vector<ShotKey> camera_and_scene_keys() {
          "Rotation of the environment about the vertical in degrees, counterclockwise as seen from above", "0", {},
          to_number<&R::environment_change, &EnvironmentChange::rotation_deg>},
          "See docs/scenes.md."),
+        with_details({"air", "--visibility", kScene, "METRES", number, "a visibility in metres, or a table",
+         "Visibility in fog or haze, in metres", "clear air", {}, to_air},
+         "In a shot file also a table [air] with the air's other properties; see docs/fog.md."),
     };
 }
 // clang-format on

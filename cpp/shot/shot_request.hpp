@@ -48,6 +48,7 @@ struct ShotRequest : PictureRequest {
     std::string environment_file;            ///< latitude-longitude picture; empty: none
     std::string environment_layer;  ///< layer of an OpenEXR file; empty: the layer that holds the picture
     EnvironmentChange environment_change;  ///< scale and rotation of the requested environment
+    std::optional<Air> air;  ///< replaces that of the scene
     SceneRequest additions;                ///< objects, materials and lights that are added to the scene
 
     std::string lens = "double-gauss-50mm";  ///< bundled lens, or a lens file

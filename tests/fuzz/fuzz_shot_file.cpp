@@ -34,6 +34,12 @@ tone = "film"
 spp = 64
 max_bounces = 1
 seed = 0
+
+[air]
+visibility_m = 200.0
+albedo = [0.9, 0.95, 1.0]
+anisotropy = 0.8
+margin_m = 50.0
 )";
 
 }  // namespace

@@ -46,6 +46,16 @@ Assembly with_valid_static_geometry(const Assembly& scene, Change&& change) {
     return changed;
 }
 
+/// Converts a number, for all three channels, or (r, g, b). Returns std::nullopt if the object is neither.
+std::optional<Color> number_or_color(const py::object& value) {
+    try {
+        return py::isinstance<py::sequence>(value) || py::isinstance<py::array>(value) ? rgb(value.cast<Colour>())
+                                                                                       : grey(value.cast<float>());
+    } catch (const py::cast_error&) {
+        return std::nullopt;
+    }
+}
+
 /// Converts the radiance of an environment; see Scene.with_environment. `layer`: of an OpenEXR file, "" for the main
 /// image. `warnings` receives the image reader's warnings. Throws InputError and ImageFileError.
 Environment environment_from(const py::object& radiance, const std::string& layer, std::vector<std::string>& warnings) {
@@ -64,14 +74,11 @@ Environment environment_from(const py::object& radiance, const std::string& laye
         for (py::ssize_t i = 0; i < pixels.size(); i += 3)
             environment.pixels.push_back({data[i], data[i + 1], data[i + 2]});
     } else {
-        try {
-            const bool several = py::isinstance<py::sequence>(radiance) || py::isinstance<py::array>(radiance);
-            const float value = several ? 0.0f : radiance.cast<float>();
-            environment.constant = several ? rgb(radiance.cast<Colour>()) : grey(value);
-        } catch (const py::cast_error&) {
+        const std::optional<Color> constant = number_or_color(radiance);
+        if (!constant)
             throw InputError(
                 "an environment must be a number, (r, g, b), an image of shape (H, W, 3), or the path of one");
-        }
+        environment.constant = *constant;
     }
     return environment;
 }
@@ -105,6 +112,25 @@ Assembly with_spot_light(const Assembly& scene, const Triple& position, const Tr
         changed.points.push_back(
             {vector_of(position), rgb(intensity), axis, kDegree * inner_cone_deg, kDegree * outer_cone_deg});
     });
+}
+
+Assembly with_air(const Assembly& scene, const std::optional<double>& visibility_m,
+                  const std::optional<Typed<"float | ArrayLike">>& extinction_per_m,
+                  const Typed<"float | ArrayLike">& albedo, double anisotropy, const std::optional<double>& margin_m) {
+    if (visibility_m && extinction_per_m)
+        throw InputError("visibility_m and extinction_per_m exclude each other: both are the extinction");
+    const auto color = [](const char* what, const py::object& value) {
+        const std::optional<Color> found = number_or_color(value);
+        if (!found) throw InputError(std::string(what) + " must be a number or (r, g, b)");
+        return *found;
+    };
+    Air air;
+    if (visibility_m) air.extinction = extinction_of_visibility(*visibility_m);
+    if (extinction_per_m) air.extinction = color("extinction_per_m", *extinction_per_m);
+    air.albedo = color("albedo", albedo);
+    air.anisotropy = static_cast<float>(anisotropy);
+    air.margin_m = margin_m;
+    return with_valid_static_geometry(scene, [&](Scene& changed) { changed.air = air; });
 }
 
 using Corner = std::tuple<double, double, double>;
@@ -163,6 +189,17 @@ Raises InputError.)")
 position_m: (x, y, z). direction: (x, y, z), axis of the cone. intensity: (r, g, b) in cd, on the axis.
 inner_cone_deg, outer_cone_deg: angles from the axis; the intensity decreases from the inner cone to 0 at the outer one.
 Raises InputError.)")
+        .def("with_air", &with_air, "visibility_m"_a = py::none(), py::kw_only(), "extinction_per_m"_a = py::none(),
+             "albedo"_a = 1.0, "anisotropy"_a = 0.8, "margin_m"_a = py::none(),
+             R"(Returns the scene with other air, a homogeneous medium such as fog that fills the space outside of glass.
+visibility_m: distance at which a black object has a contrast of 2% against the horizon; the extinction coefficient is
+  3.912 / visibility_m (Koschmieder 1924). extinction_per_m: that coefficient instead, a number or (r, g, b), per metre.
+  Without both, the air is clear.
+albedo: fraction of the extinction that is scattering, a number or (r, g, b), 0 to 1.
+anisotropy: mean cosine of the scattering angle in the phase function of Henyey and Greenstein, -0.99 to 0.99.
+margin_m: distance by which the air extends beyond the bounding box of the scene's geometry. None: unlimited or, if the
+  scene has a sun or an environment, half of the visibility.
+Raises InputError. See docs/fog.md.)")
         .def_property_readonly("triangle_count", &Assembly::triangle_count,
                                "Number of triangles of the static geometry and all instances.")
         .def_property_readonly(

@@ -1,5 +1,6 @@
 #pragma once
 #include "../../camera/models/generate_rays.hpp"
+#include "../../scene/lights/air.hpp"
 #include "../../scene/lights/light.hpp"
 #include "../path/emitter_hit.hpp"
 #include "ghost_lens_paths.hpp"
@@ -194,7 +195,8 @@ REALCAM_INLINE void start_at_lights(const SceneView& view, const CameraView& cam
         const LensPlacement lens = placement_towards(camera, camera_at(camera, samples.time[i]), samples.towards[i]);
         const LightReceiver receiver{
             point_in_scene(lens, camera.front_vertex_m, rays.origin[i]), {0, 0, 0}, samples.time[i]};
-        const LightSample light = sample_picked<scene_kind>(view, receiver, samples.lights[i]);
+        LightSample light = sample_picked<scene_kind>(view, receiver, samples.lights[i]);
+        attenuate<scene_kind>(view.air, receiver.position, light);
         // A near light has another direction here than at the front vertex, and the entry plane is perpendicular to the
         // latter.
         const Vec3f to_light = to_camera_axes(lens, light.direction);

@@ -93,7 +93,9 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
         samples.chief_film.set(i, placement.film);
         const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);
         const Vec3f entry = plane.origin + (0.001f * entry_mm.x) * plane.along + (0.001f * entry_mm.y) * plane.across;
-        const TracedLightSample traced = sampled_from(entry);
+        // The light that the air scatters is left to pixel samples.
+        TracedLightSample traced = sampled_from(entry);
+        attenuate<scene_kind>(view.air, entry, traced.sample);
         const float cosine = dot(traced.sample.direction, plane.normal);
         samples.rays.status[i] = static_cast<int>(RayStatus::vignetted);
         if (is_black(traced.sample.irradiance) || !(cosine > 0.0f)) continue;

@@ -27,6 +27,16 @@ struct GlossySurfaces {
         set(slot, is_glossy[slot] ? glossy_surface(point) : GlossySurface{});
         if (!is_glossy[slot]) others.set(slot, point);
     }
+    /// See Surfaces::set_air.
+    REALCAM_INLINE void set_air(int slot, Vec3f at, Vec3f direction) {
+        others.set_air(slot, at, direction);
+        position.set(slot, at);
+        geometric_normal.set(slot, -direction);
+        normal.set(slot, -direction);
+        self_offset[slot] = 0.0f;
+        is_glossy[slot] = 0;
+        set(slot, GlossySurface{});
+    }
     /// Fills an unused slot with the values of a slot in use.
     REALCAM_INLINE void copy(int from, int to) {
         position.set(to, position[from]);
@@ -89,6 +99,17 @@ struct SampledLobes {
         return {select(albedo > 0.0f, diffuse / albedo, 0.0f), select(albedo > 0.0f, specular / albedo, 0.0f)};
     }
 };
+
+/// attenuate_light for all slots.
+template <int N>
+REALCAM_INLINE void attenuate_lights(const AirView& air, const GlossySurfaces<N>& surfaces, const PathState<N>& path,
+                                     LightSamples<N>& lights) {
+    for (int i = 0; i < path.count; ++i) {
+        LightSample light = lights[i];
+        attenuate_light<SceneKind::any>(air, surfaces[i], path, i, light);
+        lights.irradiance.set(i, light.irradiance);
+    }
+}
 
 /// Direct light for surfaces that GlossyBsdf describes: set_direct_light for all slots. Other surfaces get black
 /// contributions.
@@ -179,6 +200,8 @@ REALCAM_INLINE void scatter_glossy_paths(const SceneView& view, const PathSettin
         if (!has_light(view, sky, k)) continue;
         LightSamples<N> lights;
         sample_lights<scene_kind>(view, kinds, k, surfaces, path, light_numbers, seed, lights);
+        if constexpr (scene_kind == SceneKind::any)
+            if (view.air.is_present()) attenuate_lights(view.air, surfaces, path, lights);
         set_direct_light_glossy(settings, bounce, surfaces, lights, path, shadow[k]);
     }
     scatter_glossy<scene_kind>(settings, bounce, sky, surfaces, scatter_numbers, path);

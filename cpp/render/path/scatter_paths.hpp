@@ -2,6 +2,7 @@
 #include "../../scene/geometry/surface_point.hpp"
 #include "../../scene/lights/light.hpp"
 #include "../../scene/materials/glossy_bsdf.hpp"
+#include "../../scene/materials/phase_function.hpp"
 #include "path_state.hpp"
 #include "shade_hits.hpp"
 
@@ -14,6 +15,16 @@ namespace REALCAM_NAMESPACE {
 REALCAM_INLINE Vec3f ray_start(const RaySpawnPoint& spawn, Vec3f direction) {
     const float offset = select(dot(spawn.geometric_normal, direction) < 0.0f, -spawn.self_offset, spawn.self_offset);
     return spawn.position + offset * spawn.geometric_normal;
+}
+
+/// Attenuates a light sample at a surface by the air between surface and light, unless the path arrives inside glass
+/// and the light comes from the same side.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void attenuate_light(const AirView& air, const RaySpawnPoint& spawn, const PathState<N>& path, int slot,
+                                    LightSample& light) {
+    if constexpr (scene_kind == SceneKind::any)
+        if (is_black(path.absorption[slot]) || dot(spawn.geometric_normal, light.direction) < 0.0f)
+            attenuate<scene_kind>(air, spawn.position, light);
 }
 
 /// Shadow rays with the contributions that they test.
@@ -131,6 +142,28 @@ REALCAM_ONE_COPY LightSample light_by_illuminance(const SceneView& scene, LightR
     return chosen;
 }
 
+/// Returns the absorption of a material's interior, per metre. That of clear glass is too small to have an effect, but
+/// not black: PathState::absorption is black only outside of glass.
+REALCAM_INLINE Color interior_absorption(const Material& material) {
+    return is_black(material.absorption) ? grey(1e-30f) : material.absorption;
+}
+
+/// Continues a path at a point at which the air scatters it. The density in the path's state is the factor by which
+/// cross_air has multiplied that of the phase function.
+template <int N>
+REALCAM_INLINE void scatter_in_air(const AirView& air, int slot, Vec3f position, Vec2f u, PathState<N>& path) {
+    const Vec3f arriving = path.rays.direction[slot],
+                direction = sample_henyey_greenstein(air.anisotropy, arriving, u);
+    path.rays.origin.set(slot, position);
+    path.rays.direction.set(slot, direction);
+    path.rays.active[slot] = !is_black(path.throughput[slot]);
+    path.pdf[slot] *= henyey_greenstein(air.anisotropy, dot(arriving, direction));
+    path.receiver_position.set(slot, position);
+    path.receiver_normal.set(slot, {0, 0, 0});
+    path.receiver_sky[slot] = SkySampling::chosen;
+    path.set_receiver_lobe(slot, {});
+}
+
 }  // namespace scatter_paths_detail
 
 /// Continues the path in a slot at a surface point: sets the shadow rays of its light samples, and samples its next
@@ -147,6 +180,10 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     const Vec3f direction = path.rays.direction[slot];
     const float time = time_of<scene_kind>(path, slot);
     if constexpr (scene_kind == SceneKind::any) {
+        if (!point.material) {
+            scatter_in_air(view.air, slot, point.position, scatter_numbers[slot], path);
+            return false;
+        }
         if (point.material->only_shadows) {
             // The background is visible with the probability that the light here is not occluded. The ray keeps its
             // direction, and therefore its stored density and receiver.
@@ -168,7 +205,8 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     REALCAM_NO_UNROLL
     for (int k = 0; k < kLightSampleCount; ++k) {
         if (!has_light(view, sky, k)) continue;
-        const LightSample light = sample_light<scene_kind>(view, sky, receiver, k, light_numbers[slot], seed);
+        LightSample light = sample_light<scene_kind>(view, sky, receiver, k, light_numbers[slot], seed);
+        attenuate_light<scene_kind>(view.air, point, path, slot, light);
         set_direct_light(settings, bounce, slot, point, bsdf, light, path, shadow[k]);
         shadow.trace(k, false);
     }
@@ -177,7 +215,8 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     if constexpr (scene_kind == SceneKind::any) path.receiver_sky[slot] = sky;
     if constexpr (scene_kind != SceneKind::plain) {
         path.set_receiver_lobe(slot, receiver.lobe);
-        if (refracted) path.absorption.set(slot, point.is_front ? point.material->absorption : Color{0, 0, 0});
+        if (refracted)
+            path.absorption.set(slot, point.is_front ? interior_absorption(*point.material) : Color{0, 0, 0});
     }
     return false;
 }

@@ -1,16 +1,24 @@
 #pragma once
+#include "../../scene/lights/air.hpp"
 #include "emitter_hit.hpp"
 #include "path_settings.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 /// Surfaces that the paths of a block have hit, one SurfacePoint per slot. All surface types of this folder have the
-/// same set() and, for vector code, position, normal, lobe() and is_in_lanes().
+/// same set() and, for vector code, position, normal, lobe() and is_in_lanes(). Those of SceneKind::any have set_air().
 template <int N>
 struct Surfaces {
     SurfacePoint points[N];
 
     REALCAM_INLINE void set(int slot, const SurfacePoint& point) { points[slot] = point; }
+    /// Stores a point at which the air scatters the path: a point without a material. `direction`: of the path, unit.
+    REALCAM_INLINE void set_air(int slot, Vec3f position, Vec3f direction) {
+        points[slot].position = position;
+        points[slot].normal = points[slot].geometric_normal = -direction;
+        points[slot].self_offset = 0.0f;
+        points[slot].material = nullptr;
+    }
 };
 
 /// Surfaces of a plain scene, stored in lanes: only the members of SurfacePoint that Lambert and Phong lobes need.
@@ -41,11 +49,6 @@ struct PlainSurfaces {
 };
 
 namespace shade_hits_detail {
-
-/// Returns the transmittance of a medium over a distance in metres (Beer-Lambert). `absorption`: per metre.
-REALCAM_INLINE Color transmittance(Color absorption, float distance) {
-    return {std::exp(-distance * absorption.r), std::exp(-distance * absorption.g), std::exp(-distance * absorption.b)};
-}
 
 /// Returns the depth of a position along the camera's axis from the film at a time, in metres.
 template <SceneKind scene_kind>
@@ -118,6 +121,13 @@ REALCAM_INLINE void shade_hits(const SceneView& view, const CameraView& camera, 
                     lane, results.irradiance[lane] +
                               clamped(environment_light<scene_kind>(view, settings, path, bounce, i), limit));
             continue;
+        }
+        if constexpr (scene_kind == SceneKind::any) {
+            if (hit.triangle == kScatteredByAir) {
+                surfaces.set_air(N > 1 ? path.count : 0, path.rays.origin[i] + hit.distance * direction, direction);
+                path.template move<scene_kind>(i, path.count++);
+                continue;
+            }
         }
         const SurfacePoint point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction, time, [&] {
             return bounce == 0 ? film_footprint(camera, block, lane) : Footprint{};

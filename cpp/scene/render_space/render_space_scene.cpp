@@ -40,6 +40,7 @@ RenderSpaceScene::RenderSpaceScene(Assembly assembly, Vec3d origin_m, TimeInterv
         }
     }
     find_kind();
+    if (assembly_.static_geometry->air.is_present()) add_triangles(static_box_, *assembly_.static_geometry, {});
     static_geometry_.add_texture_levels(checkpoint_);
     for (const auto& object : objects_) object->add_texture_levels(checkpoint_);
     for (const auto& object : objects_) object_views_.push_back(object->view());
@@ -104,6 +105,7 @@ InstancesView RenderSpaceScene::instances_view() const {
     view.key_count = static_cast<std::int32_t>(keys_.size());
     view.point_count = static_cast<std::int32_t>(points_.size());
     view.area_count = static_cast<std::int32_t>(areas_.size());
+    view.air = air_;
     return view;
 }
 
@@ -151,6 +153,31 @@ void RenderSpaceScene::update_instances() {
     }
     point_leaves.insert(point_leaves.end(), area_leaves.begin(), area_leaves.end());
     light_tree_ = LightTree(std::move(point_leaves), checkpoint_);
+    set_air();
+}
+
+void RenderSpaceScene::set_air() {
+    const Scene& scene = *assembly_.static_geometry;
+    const Air& air = scene.air;
+    air_ = {};
+    if (!air.is_present()) return;
+    air_ = {air.extinction,
+            air.extinction * air.albedo,
+            air.anisotropy,
+            {-kFarAway, -kFarAway, -kFarAway},
+            {kFarAway, kFarAway, kFarAway}};
+    const bool has_distant_light = !scene.suns.empty() || scene.environment.emits();
+    if (!air.margin_m && !has_distant_light) return;
+    BoundingBox box = static_box_;
+    for (std::size_t i = 0; i < assembly_.instances.size(); ++i)
+        if (!boxes_[i].empty())
+            for (int corner = 0; corner < 8; ++corner)
+                box.add(assembly_.instances[i].scene_from_object.point(boxes_[i].corner(corner)));
+    const double margin =
+        air.margin_m.value_or(0.5 * kKoschmieder / static_cast<double>(luminance(air.extinction)));
+    const Vec3d reach = {margin, margin, margin};
+    air_.low = static_cast<Vec3f>(box.low - reach - origin_);
+    air_.high = static_cast<Vec3f>(box.high + reach - origin_);
 }
 
 void RenderSpaceScene::add_instance(std::size_t i) {
@@ -253,6 +280,7 @@ void RenderSpaceScene::find_kind() {
     };
     include(*assembly_.static_geometry);
     for (const Instance& instance : assembly_.instances) include(*instance.object);
+    if (assembly_.static_geometry->air.is_present()) kind_ = SceneKind::any;
 }
 
 PointLight RenderSpaceScene::point_light(const ScenePointLight& light, Vec3d position, Vec3d axis) {

@@ -78,6 +78,9 @@ private:
     /// Recomputes everything that depends on the instances' transforms: instances, keys, lights and the light tree.
     void update_instances();
 
+    /// Sets the air. Its box encloses the instances at time 0, so that it is the same in all frames of a video.
+    void set_air();
+
     /// Appends the instance, its keys if it moves, and its lights.
     void add_instance(std::size_t i);
 
@@ -97,7 +100,7 @@ private:
     /// Returns the view of instance i, without keys. `transform`: its exact transform to render space.
     InstanceView instance_view(const Affine<double>& transform, std::size_t i) const;
 
-    /// Sets kind_ by the materials of all geometry.
+    /// Sets kind_ by the materials of all geometry and the air.
     void find_kind();
 
     /// Converts a light. `position`, `axis`: of the light, transformed.
@@ -112,6 +115,8 @@ private:
     TimeInterval exposure_;
     Checkpoint checkpoint_;
     RenderSpaceMesh static_geometry_;
+    BoundingBox static_box_;  ///< bounding box of the static geometry in scene space; empty if there is no air
+    AirView air_;
     std::vector<BoundingBox> boxes_;  ///< for each instance: bounding box of its object, in object space
     std::vector<std::uint32_t> object_of_;  ///< for each instance: index in objects_
     std::vector<std::unique_ptr<RenderSpaceMesh>> objects_;
