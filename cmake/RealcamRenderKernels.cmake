@@ -1,7 +1,8 @@
 # The GPU's kernels that take samples: a file for each kind of lens, kind of scene and set of effects, so that they
 # compile side by side. Together they take minutes, so those with effects are compiled for fewer kinds: the rest is
 # served by a kernel for any lens and any scene. kernel_for in cpp/cuda/kernels/render_kernel.cu takes the first of
-# their list, which is written here, that serves a picture.
+# their list, which is written here, that serves a picture. With REALCAM_CUDA_FAST_COMPILE, where kernels have only to
+# compile, each kind of lens and scene is compiled once, and the kernels for any lens and scene serve all pictures.
 function(realcam_add_render_kernels target)
   # As many sets as kCompiledEffects has, by their numbers there.
   set(effects_file ${PROJECT_SOURCE_DIR}/cpp/camera/effects/effects.hpp)
@@ -13,13 +14,18 @@ function(realcam_add_render_kernels target)
   if(count LESS 1)
     message(FATAL_ERROR "${effects_file} has no list kCompiledEffects")
   endif()
-  set(kinds "0 plain plain" "0 plain opaque" "0 plain any" "0 rotational plain" "0 rotational opaque" "0 rotational any")
   math(EXPR last "${count} - 1")
-  foreach(effects RANGE 1 ${last})
-    list(APPEND kinds "${effects} plain plain" "${effects} rotational plain" "${effects} rotational any")
-  endforeach()
+  if(REALCAM_CUDA_FAST_COMPILE)
+    set(kinds "0 plain plain" "0 rotational opaque" "${last} rotational any")
+  else()
+    set(kinds "0 plain plain" "0 plain opaque" "0 plain any" "0 rotational plain" "0 rotational opaque"
+              "0 rotational any")
+    foreach(effects RANGE 1 ${last})
+      list(APPEND kinds "${effects} plain plain" "${effects} rotational plain" "${effects} rotational any")
+    endforeach()
+  endif()
   foreach(effects RANGE ${last})
-    # Of dual pixels there is one for any picture.
+    # A single kernel of dual pixels serves all lenses and scenes.
     list(APPEND kinds "${effects} any any" "${effects} any any true")
   endforeach()
   set(kernels "// Made by cmake/RealcamRenderKernels.cmake: the kernels that were compiled, those for fewer pictures first.\n")
