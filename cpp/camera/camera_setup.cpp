@@ -70,6 +70,29 @@ CircleOfConfusion circle_of_confusion(double entrance_pupil_position, ThinLens t
     return circle;
 }
 
+/// Tracer of the pupil search for a camera with ray pairs. Rays that the search sends only to the stop arrive at the
+/// point of the stop's disc.
+PupilTracer ray_pair_tracer(const Camera& camera, PupilTracer tracer) {
+    const auto table = camera.ray_pairs;
+    const auto distance = static_cast<float>(table->film_distance),
+               stop_radius = static_cast<float>(camera.lens.open_stop_radius());
+    const int surfaces = static_cast<int>(camera.lens.surfaces.size());
+    tracer.trace = [=](const LensView<float>& lens, PupilTracer::Rays& rays) {
+        const LensPolynomialView view = table->view();
+        if (lens.count == surfaces) return trace_polynomial(view, distance, rays);
+        for (int i = 0; i < PupilTracer::kBlock; ++i) {
+            const Vec3f film = rays.origin[i], direction = rays.direction[i];
+            const float along = distance / direction.z;
+            const Vec2f point = disc_point(
+                view, 0,
+                LensPolynomialArguments<float>(view, {film.x, film.y},
+                                               {film.x - along * direction.x, film.y - along * direction.y}));
+            rays.origin.set(i, {stop_radius * point.x, stop_radius * point.y, 0});
+        }
+    };
+    return tracer;
+}
+
 }  // namespace
 
 CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraSetup* last, const LensEffects& effects,
@@ -79,6 +102,7 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
       path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm,
             film_path_ends(camera.lens, LightDirection::to_scene)),
       tables_(camera.lens, film_radius(), effects, tracer, last ? &last->tables_ : nullptr) {
+    if (camera.ray_pairs) tracer = ray_pair_tracer(camera, std::move(tracer));
     const std::vector<Affine<double>> keys = exposure_keys(camera);
     for (const Affine<double>& key : keys) keys_.push_back(placement(key, keys.front().origin));
     if (!has_real_pupil(camera.model)) {
@@ -93,7 +117,7 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
     if (camera.model == CameraModel::polynomial_lens) require_radial_pupil(camera.lens, "the camera model polynomial");
     set_pupil(tracer, last, start);
     check_light();
-    if (camera.model == CameraModel::polynomial_lens)
+    if (camera.model == CameraModel::polynomial_lens && !camera.ray_pairs)
         polynomial_.emplace(camera.lens, pupil_->view(), std::min(film_radius(), pupil_->image_radius()));
     if (traces_lights() && uses_rotational_code(camera.lens))
         pupil_entries_ = last && last->pupil_entries_ && last->pupil_ == pupil_
@@ -137,6 +161,7 @@ CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
     view.lens = path_.view();
     if (path_in_double_) view.lens_in_double = &view_in_double_;
     if (polynomial_) view.polynomial = polynomial_->view();
+    if (camera_.ray_pairs) view.polynomial = camera_.ray_pairs->view();
     const double across = std::fabs(static_cast<double>(view.thin.image_distance));
     static_cast<EffectViews&>(view) = tables_.views(camera_.film.width_mm * camera_.film.height_mm / (across * across));
     set_times(view, scene_moves);
@@ -190,6 +215,7 @@ FilmArea CameraSetup::film_area() const {
 double CameraSetup::widest_angle() const {
     const LensSystem& lens = camera_.lens;
     if (camera_.geometry) return std::min(field_of_view(camera_).diagonal / 2, camera_.geometry->inverse.max_angle);
+    if (camera_.ray_pairs) return camera_.ray_pairs->field_angle(film_radius());
     if (lens.is_rotational() && (has_real_pupil(camera_.model) || map_)) {
         const double angle = widest_field_angle(lens, film_radius());
         if (std::isfinite(angle)) return angle;
@@ -233,7 +259,8 @@ void CameraSetup::set_times(CameraView& view, bool scene_moves) const {
 }
 
 bool CameraSetup::has_lens_and_film_of(const Camera& camera) const {
-    return camera_.lens == camera.lens && camera_.film.width_mm == camera.film.width_mm &&
+    return camera_.lens == camera.lens && camera_.ray_pairs == camera.ray_pairs &&
+           camera_.film.width_mm == camera.film.width_mm &&
            camera_.film.height_mm == camera.film.height_mm && camera_.film.shift_mm == camera.film.shift_mm;
 }
 

@@ -24,6 +24,8 @@ inline Plan make_plan(Session& session, const Assembly& scene, const Camera& cam
         plan_bounces(session, scene, camera, settings, plan, progress);
         return plan;
     }
+    if (camera.ray_pairs)
+        throw InputError("effects: \"auto\" needs the surfaces of the lens, of which only rays were measured");
     // Errors and effects are estimated for the centred lens, because tilts change them little.
     Camera full = camera;
     full.lens = centred(camera.lens);

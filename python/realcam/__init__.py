@@ -104,6 +104,7 @@ if TYPE_CHECKING:
         with_better_glasses,
     )
     from .photography import DepthOfField, PhotographicFigures, depth_of_field, photographic_figures
+    from .ray_pairs import RayPairLens
     from .section import CrossSection, cross_section
     from .tolerance import (
         CopyFigures,
@@ -129,6 +130,7 @@ _TOOLS = {
     "job": "Job JobStatus",
     "optimisation": "GlassMatch GlassSearch Operand Optimisation Targets nearest_glasses optimised with_better_glasses",
     "photography": "DepthOfField PhotographicFigures depth_of_field photographic_figures",
+    "ray_pairs": "RayPairLens",
     "section": "CrossSection cross_section",
     "tolerance": "CopyFigures ElementShift Sensitivity Tolerance ToleranceStudy Tolerances random_copy tolerance_study",
     "vision": "CameraModelFit OpticalFlow Rig RigCamera fit_camera_model optical_flow save_colmap",
@@ -170,6 +172,7 @@ for _type, _name, _package, _function in (
     (Lens, "draw", "drawing", "draw"),
     (Lens, "_repr_png_", "drawing.lens_drawings", "lens_png"),
     (Lens, "gradient", "derivatives", "gradient"),
+    (Lens, "save_rays", "ray_pairs", "save_rays"),
     (Lens, "calibration", "vision.lens_calibration", "calibration"),
     (PSF, "_repr_png_", "analysis.point_spread", "psf_png"),
 ):
@@ -240,6 +243,7 @@ __all__ = [
     "RayChunks",
     "RayDerivatives",
     "RayGradient",
+    "RayPairLens",
     "RayStatus",
     "ReachedNoise",
     "RealcamError",

@@ -63,6 +63,19 @@ def read_archive(
         raise InputError(f"{path}: this is not the file that the job was made with")
     if unsigned[-_OWNER_LENGTH:].decode("ascii", "replace").rstrip() != owner:
         raise InputError(f"{path}: this file belongs to another job")
+    arrays = unpacked(path, content, limit_bytes)
+    try:
+        return json.loads(arrays.pop("about").tobytes()), arrays
+    except (KeyError, ValueError) as error:
+        raise InputError(f"{path}: this file is malformed ({type(error).__name__})") from None
+
+
+def unpacked(path: Path, content: bytes, limit_bytes: int, kinds: str = "biuf") -> dict[str, np.ndarray]:
+    """Returns the arrays in the content of an .npz file.
+
+    limit_bytes: the largest permitted size of the unpacked content. kinds: permitted kinds of dtypes. Raises InputError
+    if the content is malformed or too large, or holds an array of another kind.
+    """
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             if sum(member.file_size for member in archive.infolist()) > limit_bytes + (1 << 20):
@@ -70,13 +83,13 @@ def read_archive(
         # A header may state any shape: numpy allocates its array, but touches the memory only as bytes are read.
         with np.load(io.BytesIO(content), allow_pickle=False) as members:
             arrays = {name: members[name] for name in members.files}
-        if any(array.dtype.kind not in "biuf" for array in arrays.values()):
-            raise InputError(f"{path}: this file holds an array that is not numeric")
-        return json.loads(arrays.pop("about").tobytes()), arrays
     except InputError:
         raise
     except Exception as error:  # zipfile, zlib, numpy and json have a dozen exceptions for malformed content
         raise InputError(f"{path}: this file is malformed ({type(error).__name__})") from None
+    if any(array.dtype.kind not in kinds for array in arrays.values()):
+        raise InputError(f"{path}: this file holds an array that is not numeric")
+    return arrays
 
 
 def owner_in_file(path: str | os.PathLike[str]) -> str | None:

@@ -78,7 +78,8 @@ keys_of(const Camera& camera) {
 Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Triple& position, const Triple& look_at,
                    const Triple& up, double exposure_time_s, double iso, const std::string& model,
                    double shutter_opens_s, double readout_time_s, const std::vector<Key>& motion,
-                   const std::optional<std::shared_ptr<CalibratedGeometry>>& geometry) {
+                   const std::optional<std::shared_ptr<CalibratedGeometry>>& geometry,
+                   const std::optional<std::shared_ptr<RayPairTable>>& ray_pairs) {
     Camera camera;
     camera.lens = lens;
     camera.film = film ? *film : default_film(lens, std::nullopt, std::nullopt);
@@ -88,6 +89,7 @@ Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Tripl
     camera.iso = iso;
     camera.shutter = {shutter_opens_s, readout_time_s};
     if (geometry) camera.geometry = *geometry;
+    if (ray_pairs) camera.ray_pairs = *ray_pairs;
     validate(camera);
     if (!motion.empty()) set_motion(camera, motion_from(motion));
     return camera;
@@ -211,6 +213,83 @@ std::vector<Vec3d> extrapolated_directions(const InputArray<double>& directions)
     return result;
 }
 
+std::shared_ptr<RayPairTable> make_ray_pairs(const std::string& name, double wavelength_nm, double length_mm,
+                                             double film_distance_mm, std::pair<double, double> film_mm,
+                                             double film_radius_mm, double last_radius_mm, double plane_mm, int degree,
+                                             const InputArray<float>& coefficients,
+                                             const std::optional<InputArray<float>>& heights,
+                                             const InputArray<float>& discs) {
+    RayPairTable table{name,           wavelength_nm,  length_mm,      film_distance_mm, film_mm.first,
+                       film_mm.second, film_radius_mm, last_radius_mm, plane_mm,         degree,
+                       {},             {},             {}};
+    require_shape(coefficients, 3, 2, "coefficients");
+    table.coefficients = elements<float, 1>(coefficients);
+    if (heights) {
+        require_shape(*heights, 2, 2, "heights");
+        table.heights = elements<float, 1>(*heights);
+    }
+    require_shape(discs, 3, 2, "discs");
+    table.discs = elements<float, 1>(discs);
+    validate(table);
+    return std::make_shared<RayPairTable>(std::move(table));
+}
+
+/// See RayPairTable.trace.
+Typed<"tuple[NDArray[float64], NDArray[float64], NDArray[bool]]", py::tuple> trace_ray_pairs(
+    const RayPairTable& table, const InputArray<double>& film_mm, const InputArray<double>& last_mm) {
+    require_shape(film_mm, 2, 2, "film_mm");
+    require_shape(last_mm, 2, 2, "last_mm");
+    const py::ssize_t count = film_mm.shape(0);
+    if (last_mm.shape(0) != count) throw InputError("film_mm and last_mm must have the same length");
+    std::vector<double> origins, directions;
+    py::array_t<bool> passed(count);
+    const LensPolynomialView view = table.view();
+    for (py::ssize_t i = 0; i < count; ++i) {
+        LensRays<double, 1> ray;
+        const double *film = film_mm.data() + 2 * i, *last = last_mm.data() + 2 * i;
+        ray.origin.set(0, {film[0], film[1], 0});
+        ray.direction.set(0, normalized(Vec3d{last[0] - film[0], last[1] - film[1], -table.film_distance}));
+        ray.status[0] = 0;
+        trace_polynomial(view, table.film_distance, ray);
+        const Vec3d o = ray.origin[0], d = ray.direction[0];
+        origins.insert(origins.end(), {o.x, o.y, o.z});
+        directions.insert(directions.end(), {d.x, d.y, d.z});
+        passed.mutable_data()[i] = ray.status[0] == 0;
+    }
+    return py::make_tuple(array_from(origins, {count, 3}), array_from(directions, {count, 3}), passed);
+}
+
+void bind_ray_pairs(py::module_& m) {
+    py::class_<RayPairTable, std::shared_ptr<RayPairTable>> table(
+        m, "RayPairTable",
+        "Polynomials fitted to rays before and behind a lens, at one wavelength. Immutable; made by RayPairLens.");
+    def_value(table);
+    table
+        .def(py::init(&make_ray_pairs), py::kw_only(), "name"_a, "wavelength_nm"_a, "length_mm"_a, "film_distance_mm"_a,
+             "film_mm"_a, "film_radius_mm"_a, "last_radius_mm"_a, "plane_mm"_a, "degree"_a, "coefficients"_a,
+             "heights"_a = py::none(), "discs"_a,
+             R"(length_mm: from the front vertex (z = 0) to the last vertex. film_distance_mm: from there to the film.
+film_mm: (width, height) of the film that a Camera uses by default.
+film_radius_mm, last_radius_mm: scales of film points x and of points p in the plane of the last vertex; no light beyond.
+coefficients: (terms, 3, 2): a and b of position, direction and stop point a x + b p, for the monomials (x.x)^i (p.p)^j
+  (x.p)^k with i + j + k <= degree, of which i changes slowest and k fastest.
+heights: (terms, 2): z of position and direction. None: positions lie at z = plane_mm, directions are unit vectors.
+discs: (discs, 4, 2): a and b of points a x + b p, for the monomials 1, x.p, p.p, x.x; a ray passes if all lie inside the
+  unit circle. The first disc is that of the stop.
+Raises InputError.)")
+        .def("trace", &trace_ray_pairs, "film_mm"_a, "last_mm"_a,
+             R"(Returns (origins_mm, directions, passed), (N, 3), (N, 3) and (N,), of the rays in front of the lens.
+film_mm, last_mm: (N, 2), points on the film and in the plane of the last vertex.)")
+        .def_property_readonly("paraxial_lens", &paraxial_lens,
+                               "Lens of three thin elements with the same first-order data, which Camera(lens=...) "
+                               "takes together with ray_pairs.")
+        .def_readonly("wavelength_nm", &RayPairTable::wavelength_nm, "Wavelength.")
+        .def("__repr__", [](const RayPairTable& t) {
+            return "<realcam.RayPairTable of " + (t.name.empty() ? "a lens" : shortened(t.name)) + " at " +
+                   digits(t.wavelength_nm) + " nm>";
+        });
+}
+
 std::shared_ptr<CalibratedGeometry> make_geometry(const Film& film, double margin, const InputArray<double>& directions,
                                                   const std::optional<InputArray<float>>& gain,
                                                   const std::optional<InputArray<bool>>& defined, double max_angle_deg,
@@ -269,6 +348,7 @@ Raises InputError.)")
 void bind_camera(py::module_& m) {
     bind_film(m);
     bind_geometry(m);
+    bind_ray_pairs(m);
     m.attr("FieldOfView") = py::module_::import("collections")
                                 .attr("namedtuple")("FieldOfView", py::make_tuple("horizontal", "vertical", "diagonal"),
                                                     "module"_a = "realcam");
@@ -282,7 +362,7 @@ the film, whose centre is film_centre_m; position and look_at stay on the lens's
         .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
              "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
              "model"_a = "full", "shutter_opens_s"_a = 0.0, "readout_time_s"_a = 0.0, "motion"_a = std::vector<Key>(),
-             "geometry"_a = py::none(),
+             "geometry"_a = py::none(), "ray_pairs"_a = py::none(),
              R"(lens: the Lens. film: a Film; None: that of the lens.
 position, look_at: (x, y, z) in metres, scene. up: the upward direction.
 exposure_time_s: exposure time of each pixel. iso: sensitivity (ISO 12232).
@@ -293,6 +373,8 @@ shutter_opens_s: time in the scene at which the exposure begins. readout_time_s:
 motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in increasing order of time, instead of
   position, look_at and up, which then become those at time 0. Between keys the camera moves uniformly.
 geometry: the CalibratedGeometry of a calibration (Calibration.camera) for this film; None: that of the lens.
+ray_pairs: the RayPairTable of a RayPairLens, whose paraxial_lens is `lens` and whose model is "polynomial"; made by
+  RayPairLens.camera. None: rays are those of the lens's surfaces.
 Raises InputError.)")
         .def("replace", &changed_camera, py::kw_only(), "lens"_a = py::none(), "film"_a = py::none(),
              "position"_a = py::none(), "look_at"_a = py::none(), "up"_a = py::none(), "exposure_time_s"_a = py::none(),
@@ -318,6 +400,9 @@ perspective: a rotation about it causes no parallax. None if it lies at infinity
             "geometry", [](const Camera& c) { return std::const_pointer_cast<CalibratedGeometry>(c.geometry); },
             "The CalibratedGeometry of a calibrated camera, which is immutable; None: the geometry is that of the "
             "lens.")
+        .def_property_readonly(
+            "ray_pairs", [](const Camera& c) { return std::const_pointer_cast<RayPairTable>(c.ray_pairs); },
+            "The RayPairTable of a camera with a RayPairLens; None: the rays are those of the lens's surfaces.")
         .def_property_readonly(
             "position", [](const Camera& c) { return triple(c.pose.position_m); },
             "(x, y, z) of the centre of the unshifted film, in metres, scene.")

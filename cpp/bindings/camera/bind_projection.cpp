@@ -41,6 +41,7 @@ std::shared_ptr<const ProjectionRays> projection_rays_of(const Camera& camera, P
         CameraModel model;
         ProjectionRay ray;
         std::shared_ptr<const CalibratedGeometry> geometry;
+        std::shared_ptr<const RayPairTable> ray_pairs;
         bool operator==(const Key&) const = default;
     };
     static std::mutex mutex;
@@ -48,7 +49,7 @@ std::shared_ptr<const ProjectionRays> projection_rays_of(const Camera& camera, P
     static std::shared_ptr<const ProjectionRays> cached_rays;
     static LastSetup setups;
     validate(camera);
-    Key key = {camera.lens, camera.film.radius_mm(), {}, {}, camera.model, ray, camera.geometry};
+    Key key = {camera.lens, camera.film.radius_mm(), {}, {}, camera.model, ray, camera.geometry, camera.ray_pairs};
     const bool is_radial = has_radial_pupil(camera.lens) || !has_real_pupil(camera.model);
     if (!is_radial) {
         key.film_mm = {camera.film.width_mm, camera.film.height_mm};

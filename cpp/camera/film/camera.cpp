@@ -65,6 +65,19 @@ void validate(const std::vector<PoseKey>& motion) {
     check_keys(motion, "the camera's motion", [](const PoseKey& key) { validate(key.pose); });
 }
 
+namespace {
+
+/// Throws InputError if a camera needs more of its lens than the ray pairs that are known.
+void check_ray_pairs(const Camera& camera) {
+    const std::string start = "the rays of lens \"" + camera.ray_pairs->name + "\" were measured: ";
+    if (camera.model != CameraModel::polynomial_lens) throw InputError(start + "the camera's model must be polynomial");
+    if (camera.geometry) throw InputError(start + "they have no chief rays, which a calibration moves");
+    if (!(camera.lens == paraxial_lens(*camera.ray_pairs)))
+        throw InputError(start + "another lens, f-number, focus or zoom needs rays of its own");
+}
+
+}  // namespace
+
 void validate(const Camera& camera) {
     using namespace camera_detail;
     validate(camera.film);
@@ -84,6 +97,7 @@ void validate(const Camera& camera) {
     validate(camera.pose);
     validate(camera.motion);
     if (camera.geometry) check_film(*camera.geometry, camera.film);
+    if (camera.ray_pairs) check_ray_pairs(camera);
 }
 
 namespace camera_detail {

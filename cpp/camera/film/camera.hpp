@@ -9,6 +9,7 @@
 #include "../../math/hypotenuse.hpp"
 #include "../../math/motion.hpp"
 #include "../../optics/lens/paraxial.hpp"
+#include "../../optics/lens/ray_pair_table.hpp"
 #include "../models/camera_view.hpp"
 #include "calibrated_geometry.hpp"
 
@@ -77,6 +78,9 @@ struct Camera {
     Shutter shutter;
     std::vector<PoseKey> motion;  ///< keyframes in increasing order of time; empty: the camera does not move
     std::shared_ptr<const CalibratedGeometry> geometry = nullptr;  ///< that of a calibration; null: the lens's own
+    /// Rays of the model polynomial_lens if they were fitted to ray pairs, with `lens` = paraxial_lens(*ray_pairs); null:
+    /// they are fitted to the rays of `lens`.
+    std::shared_ptr<const RayPairTable> ray_pairs = nullptr;
 
     bool moves() const { return !motion.empty(); }
     /// Time for which a row of pixels sees the scene, s; 0 without motion blur.

@@ -187,6 +187,8 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     move(view.bundles.defined, view.bundles.mask_columns * view.bundles.mask_rows);
     move(view.bundles.positions, view.bundles.side * view.bundles.side);
     move(view.polynomial.coefficients, 2 * LensPolynomialView::kVectors * view.polynomial.terms);
+    move(view.polynomial.heights, 2 * view.polynomial.terms);
+    move(view.polynomial.discs, 2 * LensPolynomialView::kDiscTerms * view.polynomial.disc_count);
     view.move_arrays(view.lens.count, move);
     view.traced_lights.move_arrays(move);
     view.pupil.move_arrays(move);

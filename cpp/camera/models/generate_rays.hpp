@@ -287,34 +287,14 @@ REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const Sa
     }
 }
 
-/// Generates rays of the polynomial lens model: evaluates the polynomials, and clips the rays at the rims of the first
-/// and last surface and the stop.
+/// Generates rays of the polynomial lens model.
 template <int N, class Points>
 REALCAM_HD inline void generate_polynomial_rays(const CameraView& camera, const SampleBlock<N>& block,
                                                 const Points& film, const LaneNumbers<N>& u, CameraRays<N>& rays) {
-    const LensPolynomialView& lens = camera.polynomial;
-    const auto squared = [](Vec2f v) { return v.x * v.x + v.y * v.y; };
-    REALCAM_LANES
-    for (int i = 0; i < N; ++i) {
-        const Vec2f at = film[i];
-        const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u[i].x, u[i].y);
-        const float distance = camera.film_distance / pupil.direction.z;
-        const Vec2f last = {at.x - distance * pupil.direction.x, at.y - distance * pupil.direction.y};
-        const LensPolynomialRay ray = evaluate(lens, at, last);
-        const float z_squared = 1.0f - squared(ray.direction), z = -sqrt_or_zero(z_squared);
-        const float to_front = (lens.front_rim - lens.plane) / z, back = distance - lens.last_rim / pupil.direction.z;
-        const Vec2f rim = {at.x - back * pupil.direction.x, at.y - back * pupil.direction.y};
-        const Vec2f front = {ray.position.x + to_front * ray.direction.x, ray.position.y + to_front * ray.direction.y};
-        const bool sampled = (block.used[i] != 0) & (pupil.weight > 0.0f);
-        const bool passes = sampled & (squared(rim) <= lens.last_radius_squared) & (squared(ray.at_stop) <= 1.0f) &
-                            (z_squared > 0.0f) & (squared(front) <= lens.front_radius_squared);
-        set_camera_ray(
-            camera, rays, i,
-            {{ray.position.x, ray.position.y, lens.plane}, {ray.direction.x, ray.direction.y, z}, pupil.weight},
-            passes);
-        rays.sampled[i] = select(sampled, 1, 0);
-        rays.passed[i] = select(passes, 1, 0);
-    }
+    LensRays<float, N> inside;
+    start_lens_rays<LensKind::rotational>(camera, block, film, u, inside, rays);
+    trace_polynomial(camera.polynomial, camera.film_distance, inside);
+    set_camera_rays(camera, inside, rays);
 }
 
 /// generate_rays_from without the motion of calibrated cameras.

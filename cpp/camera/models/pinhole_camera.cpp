@@ -148,6 +148,7 @@ Pose pose_at_mid_exposure(const Camera& camera) {
 }
 
 double picture_angle(const Camera& camera, double image_height_mm) {
+    if (camera.ray_pairs) return camera.ray_pairs->field_angle(image_height_mm);
     const LensSystem lens = centred(camera.lens);
     if (has_real_pupil(camera.model) || camera.model == CameraModel::mapped_lens)
         return widest_field_angle(lens, image_height_mm);

@@ -74,7 +74,10 @@ REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>&
             inside.direction.set(i, surface.direction(film, direction));
             inside.status[i] = tries ? 0 : static_cast<int>(RayStatus::vignetted);
         }
-        trace_lens(camera.lens, inside);
+        if (camera.polynomial.disc_count > 0)
+            trace_polynomial(camera.polynomial, camera.film_distance, inside);
+        else
+            trace_lens(camera.lens, inside);
         for (int i = 0; i < N; ++i) {
             if (rays.passed[i] || trial[i] == kPupilTrials) continue;
             if (inside.status[i] == 0) {

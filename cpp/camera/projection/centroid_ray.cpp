@@ -25,17 +25,18 @@ void in_lanes(const std::vector<QuadratureRay>& entries, Work&& work) {
 
 }  // namespace
 
-CentroidRays::CentroidRays(const LensSystem& lens, double focus)
+CentroidRays::CentroidRays(const LensSystem& lens, double focus, const LensPolynomialView& polynomial)
     : to_scene_(lens, LightDirection::to_scene, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_scene)),
       to_film_(lens, LightDirection::to_film, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
       film_{lens.film_distance, 1 / lens.film_radius_of_curvature},
-      focus_(focus) {}
+      focus_(focus),
+      polynomial_(polynomial) {}
 
 FilmBundle CentroidRays::bundle(const PupilView& pupil, double film_radius) const {
     const PupilLookup row(pupil, static_cast<float>(film_radius), 0);
     const EntryRectangle in = {{0, static_cast<double>(row.box.centre_l)},
                                {static_cast<double>(row.box.half_height), static_cast<double>(row.box.half_width)}};
-    return FilmBundle(to_scene_, film_, {0, film_radius}, in, true);
+    return FilmBundle(to_scene_, film_, {0, film_radius}, in, true, polynomial_.disc_count > 0 ? &polynomial_ : nullptr);
 }
 
 FilmBundle CentroidRays::bundle(const PupilGridView& pupil, Vec2<double> film) const {
@@ -72,7 +73,8 @@ std::optional<CentroidRay> CentroidRays::centroid_ray(const FilmBundle& bundle) 
     if (bundle.mirrored) slope.x = position.x = 0;
     const Vec3d direction = towards + across.at(slope);
     const SceneRay ray = {across.at(position) + start * direction, normalized(direction)};
-    return CentroidRay{ray, centroid_on_film(ray, rays, bundle.mirrored), area};
+    return CentroidRay{ray, polynomial_.disc_count > 0 ? bundle.film_point() : centroid_on_film(ray, rays, bundle.mirrored),
+                       area};
 }
 
 double CentroidRays::irradiance_of(const FilmBundle& bundle) {

@@ -19,8 +19,10 @@ struct CentroidRay {
 /// Computes centroid rays of film points.
 class CentroidRays {
 public:
-    /// `focus`: distance from the entrance pupil to the plane in focus, mm; may be infinite.
-    CentroidRays(const LensSystem& lens, double focus);
+    /// `focus`: distance from the entrance pupil to the plane in focus, mm; may be infinite. `polynomial`: traces the
+    /// rays in place of the lens, unless it has no discs; the light's centroid then counts as the film point, because
+    /// polynomials trace no light from the scene.
+    CentroidRays(const LensSystem& lens, double focus, const LensPolynomialView& polynomial = {});
 
     /// Ray bundle of a film point on the +y axis, for a centred, rotationally symmetric lens with a circular stop. Must
     /// not outlive this object.
@@ -56,6 +58,7 @@ private:
     LensPath<double> to_scene_, to_film_;
     FilmSurface<double> film_;
     double focus_;
+    LensPolynomialView polynomial_;
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -84,7 +84,9 @@ RadialProjection::RadialProjection(const CameraSetup& setup, ProjectionRay ray, 
         const auto image_radius = static_cast<double>(view.pupil.image_radius);
         ends_in_film_ = image_radius < max_radius_;
         if (ends_in_film_) max_radius_ = (1 - 1e-4) * image_radius;  // at the very edge the bundle has no width
-        trace_centroid_rays(with_round_stop(lens), view.pupil, loop);
+        if (camera.ray_pairs && ray == ProjectionRay::chief)
+            throw InputError("the rays of lens \"" + lens.name + "\" were measured: the chief ray is not among them");
+        trace_centroid_rays(CentroidRays(with_round_stop(lens), focus_, view.polynomial), view.pupil, loop);
         if (ray == ProjectionRay::chief) trace_chief_rays(with_round_stop(lens));
     } else {
         const double image_distance = camera_detail::ideal_lens_of(lens, data).image_distance;
@@ -163,13 +165,13 @@ void RadialProjection::set_ray(int k, const std::optional<SceneRay>& ray, double
     stored.start = away * sine + ahead * cosine;
 }
 
-void RadialProjection::trace_centroid_rays(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop) {
+void RadialProjection::trace_centroid_rays(const CentroidRays& centroid_rays, const PupilView& pupil,
+                                           const RayLoop& loop) {
     // Adaptive refinement: the step halfway between two known ones is traced, too. If the cubics through the known
     // steps predict its ray, cubics that include it are some ten times more accurate, and the interval is not refined
     // further.
     constexpr int kWidestStep = 16;  // interval between the steps that are traced first
     constexpr double kPrecision = 5e-6;  // rad; relative to the film's radius or to the light
-    const CentroidRays centroid_rays(lens, focus_);
     std::vector<std::optional<TracedRay>> traced(rays_.size());
     const auto is_predicted = [&](const RayInterpolation& known, int k) {
         const auto& [ray, image_radius] = *traced[static_cast<std::size_t>(k)];

@@ -6,6 +6,7 @@
 #include "../../math/curves.hpp"
 #include "../../optics/analysis/scene_bundle.hpp"
 #include "../../optics/trace/ray_loop.hpp"
+#include "centroid_ray.hpp"
 #include "projection.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -65,7 +66,7 @@ private:
     void set_ray(int k, const std::optional<SceneRay>& ray, double light);
 
     /// Traces the centroid rays of as many film radii as accurate cubic interpolation requires.
-    void trace_centroid_rays(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop);
+    void trace_centroid_rays(const CentroidRays& centroid_rays, const PupilView& pupil, const RayLoop& loop);
 
     /// Replaces the rays by chief rays; keeps their light.
     void trace_chief_rays(const LensSystem& lens);

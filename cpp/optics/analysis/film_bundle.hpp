@@ -7,6 +7,7 @@
 #include "../pupil/bundle_quadrature.hpp"
 #include "../pupil/film_surface.hpp"
 #include "../trace/lens_path.hpp"
+#include "../trace/lens_polynomial_view.hpp"
 #include "../trace/ray_loop.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -40,16 +41,19 @@ public:
     bool mirrored;  ///< true: symmetric in x
 
     /// `path`: from the film frame to the scene (film_path_ends); it must outlive this object. `at`: film point, mm;
-    /// `in`: initial `middle` and `reach`.
+    /// `in`: initial `middle` and `reach`; `polynomial`: traces the rays in place of `path`, unless null.
     FilmBundle(const LensPath<double>& path, FilmSurface<double> film, Vec2<double> at, EntryRectangle in,
-               bool mirrored = false)
+               bool mirrored = false, const LensPolynomialView* polynomial = nullptr)
         : middle(in.middle),
           reach(in.reach),
           mirrored(mirrored),
           view_(path.view()),
           index_(path.entry_index),
           film_(film),
-          at_(at) {}
+          at_(at),
+          polynomial_(polynomial) {}
+
+    Vec2<double> film_point() const { return at_; }
 
     /// Sets passed[i] to true if the ray with entry point i passes the lens.
     template <int N>
@@ -70,7 +74,10 @@ public:
             rays.direction.set(i, film_.direction(at_, {l, m, -sqrt_or_zero(squared_z)}));
             rays.status[i] = squared_z > 0 ? 0 : static_cast<int>(RayStatus::missed);
         }
-        trace_lens(view_, rays);
+        if (polynomial_)
+            trace_polynomial(*polynomial_, film_.distance, rays);
+        else
+            trace_lens(view_, rays);
     }
 
 private:
@@ -78,6 +85,7 @@ private:
     double index_;
     FilmSurface<double> film_;
     Vec2<double> at_;
+    const LensPolynomialView* polynomial_;
 };
 
 }  // namespace REALCAM_NAMESPACE

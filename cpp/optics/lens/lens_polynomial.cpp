@@ -40,7 +40,10 @@ LensPolynomialView LensPolynomial::view() const {
             static_cast<float>(last_radius_ * last_radius_),
             static_cast<float>(last_rim_),
             static_cast<float>(front_radius_ * front_radius_),
-            static_cast<float>(front_rim_)};
+            static_cast<float>(front_rim_),
+            nullptr,
+            nullptr,
+            0};
 }
 
 std::vector<double> LensPolynomial::monomials(const TracedRay& ray, int degree, double film_scale, double last_scale) {
@@ -127,6 +130,11 @@ std::vector<float> LensPolynomial::fit(const std::vector<TracedRay>& rays, int d
     return coefficients;
 }
 
+LensPolynomialRay<float> LensPolynomial::evaluate_at(const LensPolynomialView& view, const TracedRay& ray) {
+    const auto in_float = [](Vec2d v) { return Vec2f{static_cast<float>(v.x), static_cast<float>(v.y)}; };
+    return evaluate(view, LensPolynomialArguments<float>(view, in_float(ray.film), in_float(ray.last)));
+}
+
 PolynomialError LensPolynomial::error_of(const std::vector<float>& coefficients, int degree,
                                          const std::vector<TracedRay>& rays) const {
     LensPolynomialView view = this->view();
@@ -134,9 +142,7 @@ PolynomialError LensPolynomial::error_of(const std::vector<float>& coefficients,
     view.degree = degree;
     PolynomialError error;
     for (const TracedRay& ray : rays) {
-        const Vec2f found = evaluate(view, {static_cast<float>(ray.film.x), static_cast<float>(ray.film.y)},
-                                     {static_cast<float>(ray.last.x), static_cast<float>(ray.last.y)})
-                                .direction;
+        const Vec3f found = evaluate_at(view, ray).direction;
         const double error_mm = focal_length_ * hypotenuse(static_cast<double>(found.x) - ray.vectors[1].x,
                                                            static_cast<double>(found.y) - ray.vectors[1].y);
         error.rms += error_mm * error_mm / static_cast<double>(rays.size());
@@ -168,14 +174,13 @@ double LensPolynomial::stop_rms(const std::vector<float>& coefficients, const st
     view.coefficients = coefficients.data();
     double sum = 0;
     for (const TracedRay& ray : rays) {
-        const LensPolynomialRay found = evaluate(view, {static_cast<float>(ray.film.x), static_cast<float>(ray.film.y)},
-                                                 {static_cast<float>(ray.last.x), static_cast<float>(ray.last.y)});
+        const LensPolynomialRay<float> found = evaluate_at(view, ray);
         const auto squared_distance = [](Vec2f a, Vec2d b, double scale) {
             const double x = (static_cast<double>(a.x) - b.x) / scale, y = (static_cast<double>(a.y) - b.y) / scale;
             return x * x + y * y;
         };
         sum += squared_distance(found.at_stop, ray.vectors[2], 1) +
-               squared_distance(found.position, ray.vectors[0], front_radius_);
+               squared_distance({found.position.x, found.position.y}, ray.vectors[0], front_radius_);
     }
     return std::sqrt(sum / static_cast<double>(rays.size()));
 }

@@ -51,6 +51,9 @@ private:
     /// Number of these monomials.
     static int monomial_count(int degree) { return (degree + 1) * (degree + 2) * (degree + 3) / 6; }
 
+    /// Ray of the polynomials for the arguments of a traced ray.
+    static LensPolynomialRay<float> evaluate_at(const LensPolynomialView& view, const TracedRay& ray);
+
     /// Traces `count` random rays of the random sequence `stream`; returns those that pass.
     std::vector<TracedRay> traced_rays(const LensSystem& lens, const PupilView& pupil, std::uint32_t stream,
                                        std::uint32_t count) const;

@@ -254,6 +254,7 @@ bool Session::has_sums_for(LayerSet requested) const {
 
 bool Session::is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const {
     return same_parts(scene, scene_) && same_transforms(scene, scene_) && camera.lens == camera_.lens &&
+           camera.geometry == camera_.geometry && camera.ray_pairs == camera_.ray_pairs &&
            camera.film == camera_.film && camera.pose == camera_.pose && camera.model == camera_.model &&
            is_same_exposure(scene, camera) && settings.seed == settings_.seed && settings.path() == settings_.path() &&
            settings.effects == settings_.effects && settings.illuminant == settings_.illuminant &&

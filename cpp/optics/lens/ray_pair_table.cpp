@@ -1,0 +1,147 @@
+#include "ray_pair_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "../../error.hpp"
+
+namespace realcam {
+
+namespace {
+
+constexpr float kUnlimited = std::numeric_limits<float>::infinity();
+
+/// Number of monomials of LensPolynomialView::degree.
+std::size_t monomial_count(int degree) {
+    const auto n = static_cast<std::size_t>(degree);
+    return (n + 1) * (n + 2) * (n + 3) / 6;
+}
+
+bool are_finite(const std::vector<float>& numbers) {
+    return std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); });
+}
+
+/// Point of the plane of the last vertex, per mm of film height, through which the ray near the axis passes the centre
+/// of the stop.
+double chief_slope(const RayPairTable& table) {
+    return -static_cast<double>(table.discs[0]) / static_cast<double>(table.discs[1]) * table.last_radius /
+           table.film_radius;
+}
+
+/// Thin plano-convex element whose plane face is behind its curved one. A paraboloid has a sag at any radius.
+void add_element(LensSystem& lens, double power, double radius, double thickness) {
+    Surface front, back;
+    front.curvature = power;
+    front.conic = -1;
+    front.material = Glass::constant(2);
+    front.clear_semi_diameter = back.clear_semi_diameter = radius;
+    back.thickness = thickness;
+    lens.surfaces.push_back(front);
+    lens.surfaces.push_back(back);
+}
+
+}  // namespace
+
+LensPolynomialView RayPairTable::view() const {
+    LensPolynomialView view{};
+    view.coefficients = coefficients.data();
+    view.terms = static_cast<int>(monomial_count(degree));
+    view.degree = degree;
+    view.inverse_film_radius = static_cast<float>(1 / film_radius);
+    view.inverse_last_radius = static_cast<float>(1 / last_radius);
+    view.plane = static_cast<float>(plane);
+    view.last_radius_squared = static_cast<float>(last_radius * last_radius);
+    view.front_radius_squared = kUnlimited;
+    view.heights = heights.empty() ? nullptr : heights.data();
+    view.discs = discs.data();
+    view.disc_count = disc_count();
+    return view;
+}
+
+double RayPairTable::field_angle(double film_height) const {
+    const LensPolynomialView view = this->view();
+    const double x = std::min(film_height, film_radius);
+    const auto at = [&](double last) { return LensPolynomialArguments<double>(view, {x, 0}, {last, 0}); };
+    // Fixed-point iteration: pupil aberrations are a small part of the stop's size.
+    double last = chief_slope(*this) * x;
+    for (int i = 0; i < 20; ++i)
+        last -= disc_point(view, 0, at(last)).x * last_radius / static_cast<double>(discs[1]);
+    if (!(std::fabs(last) <= last_radius)) last = std::clamp(chief_slope(*this) * x, -last_radius, last_radius);
+    const Vec3d direction = evaluate(view, at(last)).direction;
+    return std::atan2(std::fabs(direction.x), -direction.z);
+}
+
+void validate(const RayPairTable& table) {
+    const auto is_length = [](double x) { return x > 0 && x <= kLongest; };
+    if (!is_length(table.length) || !is_length(table.film_distance) || !is_length(table.film_radius) ||
+        !is_length(table.last_radius) || !is_length(table.film_width) || !is_length(table.film_height) ||
+        !(std::fabs(table.plane) <= kLongest) || !(table.wavelength_nm >= 100 && table.wavelength_nm <= 20000))
+        throw InputError("the ray pairs' lengths must be positive, up to 1e9 mm, and wavelengths 100 to 20000 nm");
+    if (table.degree < 0 || table.degree > RayPairTable::kMaxDegree)
+        throw InputError("the degree of the ray pairs' polynomials must lie between 0 and 8");
+    const std::size_t terms = monomial_count(table.degree);
+    if (table.coefficients.size() != 2 * LensPolynomialView::kVectors * terms ||
+        (!table.heights.empty() && table.heights.size() != 2 * terms))
+        throw InputError("the number of the ray pairs' coefficients is not that of their degree");
+    if (table.discs.empty() || table.disc_count() > RayPairTable::kMaxDiscs ||
+        table.discs.size() % (2 * LensPolynomialView::kDiscTerms) != 0)
+        throw InputError("the ray pairs must have 1 to 16 discs of 8 coefficients");
+    if (!are_finite(table.coefficients) || !are_finite(table.heights) || !are_finite(table.discs))
+        throw InputError("a coefficient of the ray pairs is not a finite number");
+    paraxial_lens(table);
+}
+
+LensSystem paraxial_lens(const RayPairTable& table) {
+    const double L = table.length, F = table.film_distance;
+    // Terms of x and p, without monomials, of the position and the slope at z = 0 in front of the lens, per mm.
+    const auto c = [&](int i) { return static_cast<double>(table.coefficients[static_cast<std::size_t>(i)]); };
+    const bool has_heights = !table.heights.empty();
+    const double z = has_heights ? static_cast<double>(table.heights[0]) : table.plane;
+    const double forward = has_heights ? -static_cast<double>(table.heights[1]) : 1;
+    const double scales[] = {1 / table.film_radius, 1 / table.last_radius};
+    double height[2], slope[2];  // slopes dx/dz, with z growing towards the film
+    for (int i = 0; i < 2; ++i) {
+        slope[i] = -c(2 + i) / forward * scales[i];
+        height[i] = c(i) * scales[i] - z * slope[i];
+    }
+    // Inverse of the matrix from the front vertex to the last one, by film height = last height + F slope.
+    const double a = height[0] + height[1], b = height[0] * F, g = slope[0] + slope[1], d = slope[0] * F;
+    const double determinant = a * d - b * g;
+    const double A = d / determinant, B = -b / determinant, D = a / determinant;
+    const double chief = chief_slope(table), chief_height = height[0] + height[1] * chief,
+                 pupil = -chief_height / (slope[0] + slope[1] * chief);
+    // The heights of the chief ray at both vertices have opposite signs; the stop divides the length in their ratio.
+    const double to_stop = L / (B / pupil + 1 - A), behind = L - to_stop;
+    const double middle = (L - B) / (to_stop * behind), first = (1 - behind * middle - A) / B,
+                 last = (1 - to_stop * middle - D) / B;
+    const double rim = std::fabs(table.last_radius / static_cast<double>(table.discs[1]));
+    const double stop_radius = std::fabs(rim - behind * (last * rim - rim / F));
+    const bool is_lens = std::fabs(determinant - 1) < 0.02 && to_stop > 0 && behind > 0 && stop_radius > 0 &&
+                         std::isfinite(first) && std::isfinite(middle) && std::isfinite(last) && std::isfinite(rim);
+    if (!is_lens)
+        throw InputError(
+            "the rays near the axis are not those of a lens in air whose chief rays cross the axis between the planes "
+            "of the ray pairs");
+    LensSystem lens;
+    lens.name = table.name;
+    lens.wavelength_nm = table.wavelength_nm;
+    lens.film_width = table.film_width;
+    lens.film_height = table.film_height;
+    lens.film_distance = F;
+    lens.stop_semi_diameter = stop_radius;
+    lens.allow_overlap = true;
+    const double object = -height[1] / slope[1];  // z at which rays from the film's centre cross the axis again
+    constexpr double kFar = -1e7;
+    lens.focus_distance = object < 0 && object > kFar ? L + F - object : kInfinity;
+    add_element(lens, first, table.last_radius, to_stop);
+    Surface stop;
+    stop.type = SurfaceType::stop;
+    stop.clear_semi_diameter = stop_radius;
+    lens.surfaces.push_back(stop);
+    add_element(lens, middle, table.last_radius, behind);
+    add_element(lens, last, table.last_radius, 0);
+    return lens;
+}
+
+}  // namespace realcam
