@@ -27,10 +27,10 @@ void check_deformed_meshes(const FileScene& scene, const GltfDocument& document,
 }
 
 /// Adds the meshes of all nodes. Skins of nodes whose transform has no inverse are left out, with a warning.
-void add_meshes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
+void add_meshes(FileScene& scene, const GltfDocument& document, GltfBuffers& buffers, GltfAccessors& accessors,
                 const GltfNodeIndices& file_indices, Checkpoint& checkpoint) {
     const GltfSkins skins(document, accessors, scene, file_indices.nodes, checkpoint);
-    GltfMeshes meshes(document, accessors, scene, checkpoint);
+    GltfMeshes meshes(document, buffers, accessors, scene, checkpoint);
     check_deformed_meshes(scene, document, meshes, file_indices);
     std::size_t left_out = 0;  // number of skins
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
@@ -73,7 +73,7 @@ FileScene parse_gltf(const std::string& path, std::string bytes, Checkpoint& che
     read_gltf_materials(scene, document);
     warn_of_extensions(scene, document);
     const GltfNodeIndices file_indices = read_gltf_nodes(scene, document, accessors, checkpoint);
-    add_meshes(scene, document, accessors, file_indices, checkpoint);
+    add_meshes(scene, document, buffers, accessors, file_indices, checkpoint);
     read_gltf_animations(scene, document, accessors, file_indices.nodes, checkpoint);
     fetch_pictures(scene, document, buffers);
     return scene;

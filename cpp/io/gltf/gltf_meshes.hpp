@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "../scene/file_scene.hpp"
+#include "gltf_compression.hpp"
 #include "gltf_skins.hpp"
 
 namespace realcam::io {
@@ -15,8 +16,9 @@ namespace realcam::io {
 class GltfMeshes {
 public:
     /// All arguments must outlive the object. scene.materials must be those of the file.
-    GltfMeshes(const GltfDocument& document, GltfAccessors& accessors, FileScene& scene, Checkpoint& checkpoint)
-        : document_(document), accessors_(accessors), scene_(scene), checkpoint_(checkpoint) {}
+    GltfMeshes(const GltfDocument& document, GltfBuffers& buffers, GltfAccessors& accessors, FileScene& scene,
+               Checkpoint& checkpoint)
+        : document_(document), buffers_(buffers), accessors_(accessors), scene_(scene), checkpoint_(checkpoint) {}
 
     /// Range of scene.meshes.
     struct Range {
@@ -45,9 +47,13 @@ private:
     };
 
     void add_primitive(const Primitive& primitive);
-    /// Throws SceneFileError if a primitive exists only in a compressed form: accessors without bytes would be read as
-    /// 0. Files may have an uncompressed form in addition.
-    void check_compression(const Primitive& primitive) const;
+    /// Decodes a primitive of KHR_draco_mesh_compression, so that its accessors have their elements. Without the
+    /// library, an uncompressed form is used; throws SceneFileError if there is none.
+    void decode(const Primitive& primitive);
+    /// True if positions and indices of a primitive have uncompressed bytes.
+    bool has_uncompressed(const Primitive& primitive) const;
+    /// Returns the names of the attributes that are read of a primitive.
+    std::vector<std::string> attribute_names(const Primitive& primitive) const;
     /// Returns the index of a primitive's material; a default material is added on first use.
     std::uint32_t material_of(const Json& primitive, const std::string& label);
     /// Returns the index of a primitive's vertices in scene.vertices, adding them on first use.
@@ -72,6 +78,7 @@ private:
     using Attributes = std::tuple<std::size_t, std::size_t, std::size_t, std::size_t, std::size_t>;
 
     const GltfDocument& document_;
+    GltfBuffers& buffers_;
     GltfAccessors& accessors_;
     FileScene& scene_;
     Checkpoint& checkpoint_;

@@ -68,9 +68,8 @@ std::optional<JointMaps> GltfSkins::joint_maps(std::size_t index, std::size_t no
 
 JointWeights read_joint_weights(const GltfDocument& document, GltfAccessors& accessors, const Json& attributes,
                                 std::size_t vertices, std::size_t joints, const std::string& label) {
-    constexpr std::size_t kMaxSets = 4;
     JointWeights out;
-    for (std::size_t set = 0; set < kMaxSets; ++set) {
+    for (std::size_t set = 0; set < kMaxJointSets; ++set) {
         const std::string suffix = '_' + std::to_string(set);
         const Json &joint_json = attributes["JOINTS" + suffix], &weight_json = attributes["WEIGHTS" + suffix];
         if (joint_json.is_null() || weight_json.is_null()) break;

@@ -31,6 +31,9 @@ private:
     std::vector<std::uint32_t> node_index_;  ///< index in scene.nodes of each node of the file
 };
 
+/// Number of sets JOINTS_n and WEIGHTS_n that are read.
+inline constexpr std::size_t kMaxJointSets = 4;
+
 /// Joints that move each vertex, and their weights. They are stored as in the file: for each set of four joints per
 /// vertex (JOINTS_0, JOINTS_1, ...), four numbers for each vertex.
 struct JointWeights {
