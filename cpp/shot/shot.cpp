@@ -204,7 +204,8 @@ Camera camera_of(const ShotRequest& request) {
 
 Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, const KeepGoing& keep_going) {
     return scene_of(request,
-                    io::read_scene(request.scene, {request.scale, {}, keep_going, request.variants}, readers.texture),
+                    io::read_scene(request.scene, {request.scale, {}, keep_going, request.variants, request.scene_name},
+                                   readers.texture),
                     readers, keep_going);
 }
 
