@@ -14,6 +14,7 @@
 #include "io/text/printable.hpp"
 #include "mutate_bytes.hpp"
 #include "mutate_text.hpp"
+#include "scene/scene_checks.hpp"
 #include "scene_seeds.hpp"
 #include "target.hpp"
 
@@ -36,12 +37,24 @@ std::optional<io::DecodedImage> read_picture(const std::string& path, std::span<
     return io::DecodedImage{1, 1, std::vector<float>{0, 0.5f, 65504, 1}, true};
 }
 
+/// Shapes that change over time are valid scenes at other times, or out of reach.
+void check_shapes(const Assembly& scene, const std::string& content) {
+    for (const double time_s : {-1e9, 0.3, 1e9}) {
+        try {
+            SceneChecks().check(frozen_at(scene, time_s));
+        } catch (const InputError& error) {
+            check_text("a message of several lines, or very long", error.what(), content);
+        }
+    }
+}
+
 /// `content`: what was mutated, for the report.
 void read(const std::string& path, const std::string& content, const io::SceneFileOptions& options) {
     ++findings().files;
     try {
         const Assembly scene = io::read_scene(path, options, read_picture);
         ++findings().files_read;
+        if (scene.deforms()) check_shapes(scene, content);
         for (const std::string& warning : scene.static_geometry->warnings)
             check_text("a warning of several lines, or very long", warning, content);
     } catch (const SceneFileError& error) {
@@ -102,6 +115,7 @@ int fuzz_gltf(const std::uint8_t* data, std::size_t size) {
     const std::string content = mutated_text(in, gltf_seed());
     io::SceneFileOptions options = some_options(in);
     if (in.chance(40)) options.objects = {"car"};
+    if (in.chance(40)) options.scene_name = in.chance(128) ? "main" : "1";
     FuzzFolder::get().write("seed.png", "a picture");
     read(FuzzFolder::get().write("seed.gltf", content), content, options);
     return 0;

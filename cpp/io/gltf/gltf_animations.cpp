@@ -31,7 +31,8 @@ public:
 
     GltfTargetWeights read() {
         const Json& channels = animation_["channels"];
-        std::size_t other_paths = 0, with_matrix = 0;  // numbers of channels that are not supported
+        std::size_t other_paths = 0, without_targets = 0,
+                    with_matrix = 0;  // numbers of channels that are not supported
         for (std::size_t c = 0; c < channels.size(); ++c) {
             checkpoint_.pass();
             const Json& target = channels[c]["target"];
@@ -41,7 +42,10 @@ public:
             if (!node || !node_index_.contains(*node)) continue;
             if (path == "weights") {
                 const std::size_t targets = target_count(*node);
-                if (targets == 0) continue;
+                if (targets == 0) {
+                    ++without_targets;
+                    continue;
+                }
                 const auto keys = keys_of(channels[c]["sampler"], "SCALAR", targets, where);
                 target_weights_[*node] = {keys, changes(keys)};
             } else if (path != "translation" && path != "rotation" && path != "scale") {
@@ -56,6 +60,7 @@ public:
         }
         remove_constant_motions();
         warn(other_paths, "channels animate something else than translation, rotation, scale and weights");
+        warn(without_targets, "channels animate the weights of a mesh without morph targets");
         warn(with_matrix, "channels animate nodes that have a matrix, which remain static");
         return std::move(target_weights_);
     }

@@ -128,6 +128,7 @@ private:
         if (const std::optional<std::size_t> scene = scene_named(name)) return *scene;
         std::set<std::string> names;
         for (std::size_t i = 0; i < count; ++i) names.insert(printable(root["scenes"][i]["name"].text()));
+        names.erase("");
         document_.fail("has no scene " + in_quotes(name.substr(0, 60)) +
                        did_you_mean(name, {names.begin(), names.end()}) +
                        "; expected the name or the index of one of its " + std::to_string(count) + " scenes");
