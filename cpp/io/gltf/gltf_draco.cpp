@@ -27,12 +27,29 @@ std::size_t components_of(const draco::PointCloud& mesh) {
     return sum;
 }
 
-/// Decoder that refuses attributes with too many components before it allocates memory for them.
+/// Decoder that refuses attributes that need too much memory, before it allocates memory for them.
 template <class Decoder>
 class BoundedDecoder : public Decoder {
+public:
+    explicit BoundedDecoder(std::size_t vertices) : vertices_(vertices) {}
+
+    /// Returns why the attributes were refused; empty if they were not.
+    const std::string& refusal() const { return refusal_; }
+
+private:
     bool DecodeAllAttributes() override {
-        return components_of(*this->point_cloud()) <= kMaxDracoComponents && Decoder::DecodeAllAttributes();
+        // Of each component, the value as it is coded, its prediction and the final value.
+        constexpr std::size_t kBytesPerComponent = 16;
+        const std::size_t components = components_of(*this->point_cloud());
+        refusal_ = components > kMaxDracoComponents
+                       ? std::to_string(components) + " numbers for each vertex; at most " +
+                             std::to_string(kMaxDracoComponents) + " are decoded"
+                       : too_much_memory(kBytesPerComponent * components * vertices_);
+        return refusal_.empty() && Decoder::DecodeAllAttributes();
     }
+
+    std::size_t vertices_;
+    std::string refusal_;
 };
 
 /// Beginning of a Draco mesh.
@@ -111,13 +128,14 @@ std::string elements_of(const GltfDocument& document, const draco::Mesh& mesh, c
     return bytes;
 }
 
-/// Decodes the mesh. Returns false if the bytes are not valid.
+/// Decodes a mesh of this number of vertices. Returns why it cannot be decoded; empty if it was.
 template <class Decoder>
-bool decode(std::string_view encoded, draco::Mesh& mesh) {
+std::string decode(std::string_view encoded, std::size_t vertices, draco::Mesh& mesh) {
     draco::DecoderBuffer buffer;
     buffer.Init(encoded.data(), encoded.size());
-    BoundedDecoder<Decoder> decoder;
-    return decoder.Decode(draco::DecoderOptions(), &buffer, &mesh).ok();
+    BoundedDecoder<Decoder> decoder(vertices);
+    if (decoder.Decode(draco::DecoderOptions(), &buffer, &mesh).ok()) return "";
+    return decoder.refusal().empty() ? "is not valid" : "needs " + decoder.refusal();
 }
 
 std::string text_of(std::uint64_t vertices, std::uint64_t triangles) {
@@ -141,16 +159,13 @@ DracoMesh decode_draco(const GltfDocument& document, std::string_view encoded, c
     };
     // Edgebreaker's vertices at the seams of attributes become several vertices.
     check_size(header.vertices, header.triangles, !header.is_edgebreaker);
-    // Connectivity (some 100 bytes for each triangle), and attributes as they are coded and as they are used.
-    constexpr std::size_t kBytesPerTriangle = 100, kBytesPerVertex = 64;
-    if (const std::string why = too_much_memory(kBytesPerTriangle * size.triangles + kBytesPerVertex * size.vertices);
-        !why.empty())
+    constexpr std::size_t kBytesPerTriangle = 100;  // of the connectivity
+    if (const std::string why = too_much_memory(kBytesPerTriangle * size.triangles); !why.empty())
         document.fail(where + ": its Draco mesh needs " + why);
     draco::Mesh mesh;
-    if (!(header.is_edgebreaker ? decode<draco::MeshEdgebreakerDecoder>(encoded, mesh)
-                                : decode<draco::MeshSequentialDecoder>(encoded, mesh)))
-        document.fail(where + ": its Draco mesh is not valid, or has more than " + std::to_string(kMaxDracoComponents) +
-                      " numbers for each vertex");
+    const std::string why = header.is_edgebreaker ? decode<draco::MeshEdgebreakerDecoder>(encoded, size.vertices, mesh)
+                                                  : decode<draco::MeshSequentialDecoder>(encoded, size.vertices, mesh);
+    if (!why.empty()) document.fail(where + ": its Draco mesh " + why);
     check_size(mesh.num_points(), mesh.num_faces(), true);
     DracoMesh out;
     out.indices.reserve(3 * size.triangles);
