@@ -25,6 +25,12 @@ licence libtbb "$sources/oneTBB/LICENSE.txt"
 fetch RenderKit/embree v4.3.3
 install embree -DEMBREE_TUTORIALS=OFF -DEMBREE_ISPC_SUPPORT=OFF
 licence libembree4 "$sources/embree/LICENSE.txt"
+fetch google/draco 1.5.7
+install draco -DBUILD_SHARED_LIBS=ON
+licence libdraco "$sources/draco/LICENSE"
+fetch zeux/meshoptimizer v0.25
+install meshoptimizer -DMESHOPT_BUILD_SHARED_LIBS=ON
+licence libmeshoptimizer "$sources/meshoptimizer/LICENSE.md"
 fetch marzer/tomlplusplus v3.4.0
 install tomlplusplus
 fetch CLIUtils/CLI11 v2.4.2

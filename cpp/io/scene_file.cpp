@@ -143,7 +143,7 @@ Assembly read_obj_scene(const std::string& path, const SceneFileOptions& options
 
 Assembly read_gltf_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image,
                          Checkpoint& checkpoint) {
-    return assemble(read_gltf(path, checkpoint), options, read_image, checkpoint);
+    return assemble(read_gltf(path, options.scene_name, checkpoint), options, read_image, checkpoint);
 }
 
 Assembly read_stage(const std::string& path, const SceneFileOptions& options, const ImageReader&, Checkpoint&) {
@@ -179,6 +179,8 @@ Assembly read_any(const std::string& path, const SceneFileOptions& options, cons
     const SceneFormat& format = format_of(path);
     if (!options.variants.empty() && format.read != &read_stage)
         throw InputError(path + ": variants are selected in a USD stage; this file has none");
+    if (!options.scene_name.empty() && format.read != &read_gltf_scene)
+        throw InputError(path + ": scenes are selected in a glTF file; this file has one");
     check_file(path);
     return format.read(path, options, read_image, checkpoint);
 }
@@ -221,7 +223,7 @@ Assembly read_glb(const std::string& path, std::string glb, std::vector<std::str
                   const SceneFileOptions& options, const ImageReader& read_image) {
     return checked_scene(path, options, [&] {
         Checkpoint checkpoint(options.keep_going);
-        FileScene file = parse_gltf(path, std::move(glb), checkpoint);
+        FileScene file = parse_gltf(path, std::move(glb), {}, checkpoint);
         append(warnings, std::move(file.warnings));
         file.warnings = std::move(warnings);
         return assemble(file, options, read_image, checkpoint);

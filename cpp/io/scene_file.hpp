@@ -19,6 +19,7 @@ struct SceneFileOptions {
     KeepGoing keep_going = {};
     /// Variants of a USD stage, as its paths write them: "/Chair{color=red}".
     std::vector<std::string> variants = {};
+    std::string scene_name = {};  ///< name or index of a scene in a glTF file; empty: the file's own
 };
 
 /// Reads a scene; the suffix selects the format. Throws SceneFileError if the file cannot be used, InputError for an
@@ -32,8 +33,8 @@ struct SceneFileOptions {
 /// remain outward.
 /// Named nodes become instances, several of one name "car", "car.2"; so do meshes whose copies would take a million
 /// triangles or more. Nodes of an OBJ are the faces after a line "o" or "g". Coordinates in a mesh of a glTF are
-/// floats: far-away objects should be placed by a translated node. Skins and morph targets have the file's pose and
-/// weights. Polygons of an OBJ may be concave. Triangles without area are dropped. glTF meshes without normals are
+/// floats: far-away objects should be placed by a translated node. Skins and morph targets follow
+/// the file's first animation (Scene::deformation). Polygons of an OBJ may be concave. Triangles without area are dropped. glTF meshes without normals are
 /// flat, as that format requires. An OBJ with smoothing groups has smooth normals within them and flat ones elsewhere.
 /// Other OBJ and PLY files get smooth normals where faces share positions and meet at less than 45 degrees.
 ///

@@ -96,6 +96,8 @@ void validate(const Assembly& assembly) {
 }
 
 Assembly frozen_at(Assembly assembly, double time_s) {
+    Shapes shapes;
+    assembly = with_shapes_at(std::move(assembly), time_s, shapes);
     for (Instance& instance : assembly.instances) {
         instance.scene_from_object = instance.transform_at(time_s);
         instance.motion = nullptr;

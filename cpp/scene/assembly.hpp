@@ -76,9 +76,15 @@ struct Assembly {
 
     /// True if the static geometry or any instance emits light.
     bool has_light() const;
-    /// True if any instance is animated.
+    /// True if any instance is animated, or its object deforms.
     bool moves() const {
-        return std::any_of(instances.begin(), instances.end(), [](const Instance& i) { return i.motion != nullptr; });
+        return std::any_of(instances.begin(), instances.end(), [](const Instance& i) { return i.motion != nullptr; }) ||
+               deforms();
+    }
+    /// True if the object of any instance deforms.
+    bool deforms() const {
+        return std::any_of(instances.begin(), instances.end(),
+                           [](const Instance& i) { return i.object->deformation != nullptr; });
     }
     /// Number of triangles of the static geometry and of all instances, each counted in full.
     std::size_t triangle_count() const;
@@ -118,7 +124,7 @@ Assembly with_static_geometry(Assembly assembly, Change&& change) {
     return assembly;
 }
 
-/// Returns the scene frozen at a time: every instance has a fixed transform.
+/// Returns the scene frozen at a time: every instance has a fixed transform, and every object a constant shape.
 Assembly frozen_at(Assembly assembly, double time_s);
 
 /// True if two transforms are equal up to rounding (1e-9, relative).

@@ -1,9 +1,11 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "air.hpp"
+#include "deformation.hpp"
 #include "scene_view.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -55,6 +57,8 @@ struct Scene {
     std::vector<SunLight> suns;
     Environment environment;
     Air air;
+    /// Null if the shape is constant; otherwise positions and normals are those at time 0. Only objects may deform.
+    std::shared_ptr<const Deformation> deformation = nullptr;
     /// Problems that the reader tolerated, such as a missing texture, for the caller to show.
     std::vector<std::string> warnings;
 

@@ -93,6 +93,9 @@ public:
             throw SceneFileError((file_.empty() ? "the scene" : file_ + ":") + std::string(" holds no triangles"));
         check_vertices();
         check_triangles();
+        if (scene_.deformation)
+            if (const std::string why = deformation_error(*scene_.deformation, scene_.positions_m.size()); !why.empty())
+                fail("its deformation: " + why);
         check_materials();
         check_textures();
         check_lights();
@@ -298,6 +301,7 @@ void SceneChecks::check_parts(const Assembly& scene, const std::string& file, Ch
     std::set<const Scene*> checked{last_.static_geometry.get()};
     for (const Instance& instance : last_.instances) checked.insert(instance.object.get());
     // Geometry that was valid as an object may be invalid as a whole scene: it may have no triangles.
+    if (scene.static_geometry->deformation) throw InputError("only instanced objects may deform");
     if (checked.insert(scene.static_geometry.get()).second || scene.instances.empty())
         validate(*scene.static_geometry, file, !scene.instances.empty(), checkpoint);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {

@@ -258,6 +258,8 @@ std::vector<ShotKey> camera_and_scene_keys() {
          "mapped is a thin lens with the real one's distortion and vignetting."),
         {"scale", "--scale", kScene, "METRES", number, kNumber, "Metres per unit of the scene's file", "1", {},
          to_number<&R::scale>},
+        {"scene_name", "--scene-name", kScene, "NAME", text, "the name or the index of a scene",
+         "Scene of a glTF file with several, by its name or index", "the file's own", {}, to_text<&R::scene_name>},
         {"variants", "--variants", kScene, "SELECTIONS", names, "variants such as /Chair{color=red}",
          "Variants of a USD stage, separated by commas, such as /Chair{color=red}", "the stage's own", {}, to_variants},
         {"texture", nullptr, kScene, "FILE", text, "a picture", "Picture that textures all materials",

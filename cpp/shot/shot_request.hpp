@@ -43,6 +43,7 @@ struct ShotRequest : PictureRequest {
     std::string scene;  ///< scene file
     double scale = 1;   ///< metres per unit of the scene file
     std::vector<std::string> variants;  ///< of a USD stage (io::SceneFileOptions)
+    std::string scene_name;  ///< in a glTF file (io::SceneFileOptions)
     std::string texture;  ///< picture for all materials; empty: the scene's own textures
     std::optional<Vec3f> environment_cd_m2;  ///< radiance of a uniform environment, linear Rec. 709
     std::string environment_file;            ///< latitude-longitude picture; empty: none

@@ -64,9 +64,14 @@ def _load(*arguments: Any, **named: Any) -> Scene:
 
 
 def _signature(
-    path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = [], variants: Sequence[str] = []
+    path: str | os.PathLike[str],
+    *,
+    scale: float = 1.0,
+    objects: Sequence[str] = [],
+    variants: Sequence[str] = [],
+    scene_name: str = "",
 ) -> Scene:
-    return _load(path, scale=scale, objects=objects, variants=variants)
+    return _load(path, scale=scale, objects=objects, variants=variants, scene_name=scene_name)
 
 
 _load.__signature__ = inspect.signature(_signature)  # type: ignore[attr-defined]

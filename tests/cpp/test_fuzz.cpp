@@ -26,8 +26,12 @@ TEST_CASE("a mutated file of any kind is what it should be, or an error") {
         fuzz::Target target;
     };
     const Kind kinds[] = {
-        {"OBJ", fuzz::fuzz_obj},        {"MTL", fuzz::fuzz_mtl}, {"glTF", fuzz::fuzz_gltf},
-        {"GLB", fuzz::fuzz_glb},        {"PLY", fuzz::fuzz_ply},
+        {"OBJ", fuzz::fuzz_obj},
+        {"MTL", fuzz::fuzz_mtl},
+        {"glTF", fuzz::fuzz_gltf},
+        {"GLB", fuzz::fuzz_glb},
+        {"compressed", fuzz::fuzz_compressed},
+        {"PLY", fuzz::fuzz_ply},
 #if defined(REALCAM_FUZZ_SHOT_FILES)
         {"shot", fuzz::fuzz_shot_file},
 #endif

@@ -1,17 +1,20 @@
 // Fuzz targets: a scene file, mutated from one that can be read, becomes a scene that validate() accepts or a
 // SceneFileError whose message is one short line; nothing else. One target for each format.
 
+#include <algorithm>
 #include <cstring>
 #include <iterator>
 #include <string>
 #include <vector>
 
+#include "compressed_meshes.hpp"
 #include "error.hpp"
 #include "fuzz_folder.hpp"
 #include "io/scene_file.hpp"
 #include "io/text/printable.hpp"
 #include "mutate_bytes.hpp"
 #include "mutate_text.hpp"
+#include "scene/scene_checks.hpp"
 #include "scene_seeds.hpp"
 #include "target.hpp"
 
@@ -34,12 +37,24 @@ std::optional<io::DecodedImage> read_picture(const std::string& path, std::span<
     return io::DecodedImage{1, 1, std::vector<float>{0, 0.5f, 65504, 1}, true};
 }
 
+/// Shapes that change over time are valid scenes at other times, or out of reach.
+void check_shapes(const Assembly& scene, const std::string& content) {
+    for (const double time_s : {-1e9, 0.3, 1e9}) {
+        try {
+            SceneChecks().check(frozen_at(scene, time_s));
+        } catch (const InputError& error) {
+            check_text("a message of several lines, or very long", error.what(), content);
+        }
+    }
+}
+
 /// `content`: what was mutated, for the report.
 void read(const std::string& path, const std::string& content, const io::SceneFileOptions& options) {
     ++findings().files;
     try {
         const Assembly scene = io::read_scene(path, options, read_picture);
         ++findings().files_read;
+        if (scene.deforms()) check_shapes(scene, content);
         for (const std::string& warning : scene.static_geometry->warnings)
             check_text("a warning of several lines, or very long", warning, content);
     } catch (const SceneFileError& error) {
@@ -100,6 +115,7 @@ int fuzz_gltf(const std::uint8_t* data, std::size_t size) {
     const std::string content = mutated_text(in, gltf_seed());
     io::SceneFileOptions options = some_options(in);
     if (in.chance(40)) options.objects = {"car"};
+    if (in.chance(40)) options.scene_name = in.chance(128) ? "main" : "1";
     FuzzFolder::get().write("seed.png", "a picture");
     read(FuzzFolder::get().write("seed.gltf", content), content, options);
     return 0;
@@ -118,6 +134,38 @@ int fuzz_glb(const std::uint8_t* data, std::size_t size) {
     return 0;
 }
 
+/// Meshes of Draco and of meshoptimizer: mostly the compressed bytes, and now and then the JSON that promises their
+/// size.
+int fuzz_compressed(const std::uint8_t* data, std::size_t size) {
+    Bytes in(data, size);
+    const GridMesh grid(1 + in.below(6));
+    std::string json, binary;
+    if (const bool is_draco = in.chance(160); is_draco && REALCAM_HAS_DRACO) {
+#if REALCAM_HAS_DRACO
+        binary = draco_bytes(grid, {in.chance(170), in.below(16), 2 + in.below(12), in.below(12), in.below(11)});
+        json = draco_json(grid, binary.size());
+#endif
+    } else if (REALCAM_HAS_MESHOPT) {
+#if REALCAM_HAS_MESHOPT
+        const MeshoptWriter writer = meshopt_grid(grid, in.chance(128));
+        binary = writer.bytes;
+        json = meshopt_json(grid, writer);
+#endif
+    } else {
+        json = gltf_seed("");
+        binary = gltf_buffer();
+    }
+    if (in.chance(50)) json = mutated_text(in, json);
+    if (in.chance(230)) {
+        const std::size_t length = binary.size();
+        binary = mutated_bytes(in, binary);
+        // A buffer of another length than the JSON says would be refused before it is decoded.
+        binary.resize(std::max(length, binary.size()));
+    }
+    read(FuzzFolder::get().write("seed.glb", glb_of(json, binary)), json, some_options(in));
+    return 0;
+}
+
 int fuzz_ply(const std::uint8_t* data, std::size_t size) {
     Bytes in(data, size);
     const std::string content = mutated_ply(in);
@@ -127,7 +175,7 @@ int fuzz_ply(const std::uint8_t* data, std::size_t size) {
 
 /// libFuzzer's one target: the format by the first byte.
 int fuzz_scene_file(const std::uint8_t* data, std::size_t size) {
-    constexpr Target formats[] = {fuzz_obj, fuzz_mtl, fuzz_gltf, fuzz_glb, fuzz_ply};
+    constexpr Target formats[] = {fuzz_obj, fuzz_mtl, fuzz_gltf, fuzz_glb, fuzz_compressed, fuzz_ply};
     return size == 0 ? 0 : formats[data[0] % std::size(formats)](data + 1, size - 1);
 }
 

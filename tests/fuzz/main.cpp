@@ -43,6 +43,7 @@ constexpr NamedTarget kTargets[] = {
     {"mtl", fuzz_mtl, &Findings::files, "files", 10},
     {"gltf", fuzz_gltf, &Findings::files, "files", 10},
     {"glb", fuzz_glb, &Findings::files, "files", 10},
+    {"compressed", fuzz_compressed, &Findings::files, "files", 10},
     {"ply", fuzz_ply, &Findings::files, "files", 10},
 #if defined(REALCAM_FUZZ_SHOT_FILES)
     {"shot_file", fuzz_shot_file, &Findings::files, "files", 10},

@@ -107,7 +107,7 @@ inline std::string gltf_buffer() {
 /// GLB.
 inline std::string gltf_seed(const std::string& uri) {
     return R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual","KHR_materials_sheen"],"extensionsRequired":["KHR_texture_transform"],
-"scene":0,"scenes":[{"nodes":[0,4,6]}],
+"scene":0,"scenes":[{"name":"main","nodes":[0,4,6]},{"nodes":[4,6]}],
 "nodes":[{"name":"root","children":[1,2,3],"translation":[0,1,0],"rotation":[0,0,0.7071,0.7071],"scale":[1,2,-1]},
 {"name":"car","mesh":0},{"name":"car","mesh":1,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,3,2,1,1],"weights":[0.5],
 "extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0,"SCALE":1,"ROTATION":4}}}},
@@ -133,8 +133,9 @@ inline std::string gltf_seed(const std::string& uri) {
 "textures":[{"source":0,"sampler":0},{"source":1}],"samplers":[{"wrapS":33071,"wrapT":33648,"magFilter":9728,"minFilter":9987}],
 "images":[{"bufferView":8,"mimeType":"image/png"},{"uri":"seed.png"},{"uri":"data:image/png;base64,iVBORw0KGgo="}],
 "cameras":[{"name":"eye","type":"perspective","perspective":{"yfov":1,"znear":0.1}},{"type":"orthographic"}],
-"animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}},{"sampler":1,"target":{"node":1,"path":"rotation"}}],
-"samplers":[{"input":8,"output":0},{"input":8,"output":4,"interpolation":"STEP"}]}],
+"animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}},{"sampler":1,"target":{"node":1,"path":"rotation"}},
+{"sampler":2,"target":{"node":5,"path":"rotation"}},{"sampler":3,"target":{"node":2,"path":"weights"}}],
+"samplers":[{"input":8,"output":0},{"input":8,"output":4,"interpolation":"STEP"},{"input":8,"output":4},{"input":8,"output":8}]}],
 "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","color":[1,0.5,0.25],"intensity":40},{"type":"spot","spot":{"innerConeAngle":0.1,"outerConeAngle":0.5}},{"type":"directional"}]}},
 "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[-1,-1,0],"max":[1,1,0]},
 {"bufferView":0,"byteOffset":48,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"},

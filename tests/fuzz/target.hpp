@@ -17,6 +17,7 @@ int fuzz_obj(const std::uint8_t* data, std::size_t size);
 int fuzz_mtl(const std::uint8_t* data, std::size_t size);
 int fuzz_gltf(const std::uint8_t* data, std::size_t size);
 int fuzz_glb(const std::uint8_t* data, std::size_t size);
+int fuzz_compressed(const std::uint8_t* data, std::size_t size);
 int fuzz_ply(const std::uint8_t* data, std::size_t size);
 int fuzz_scene_file(const std::uint8_t* data, std::size_t size);
 int fuzz_shot_file(const std::uint8_t* data, std::size_t size);

@@ -24,7 +24,14 @@ FILES = zipfile.ZipFile(WHEEL)
 
 # Libraries that the wheel may contain, and their licences. GPL libraries are excluded, in every version, with or
 # without exceptions.
-LICENCES = {"libembree3": "Apache-2.0", "libembree4": "Apache-2.0", "libtbb": "Apache-2.0", "libpng16": "libpng"}
+LICENCES = {
+    "libembree3": "Apache-2.0",
+    "libembree4": "Apache-2.0",
+    "libtbb": "Apache-2.0",
+    "libpng16": "libpng",
+    "libdraco": "Apache-2.0",
+    "libmeshoptimizer": "MIT",
+}
 POLICY = next(
     policy
     for policy in auditwheel_policy.WheelPolicies(
@@ -89,7 +96,9 @@ def test_every_library_inside_has_a_licence_that_allows_it() -> None:
         texts = [file for file in FILES.namelist() if f".dist-info/licenses/{library}/" in file]
         assert texts, f"{library}: its licence is not in the wheel"
         assert not any("GPL" in Path(text).name for text in texts)
-        expected = {"Apache-2.0": b"Apache License", "libpng": b"libpng"}[LICENCES[library]]
+        expected = {"Apache-2.0": b"Apache License", "libpng": b"libpng", "MIT": b"without restriction"}[
+            LICENCES[library]
+        ]
         assert any(expected in FILES.read(text) for text in texts)
 
 

@@ -32,10 +32,10 @@ Vec3d unit_vector(const char* what, const Triple& direction) {
 }
 
 Assembly load(const PathLike& path, double scale, const std::vector<std::string>& objects,
-              const std::vector<std::string>& variants) {
+              const std::vector<std::string>& variants, const std::string& scene_name) {
     const std::string name = path_from(path);
     const Unlocked unlocked;
-    return io::read_scene(name, {scale, objects, heed_signals, variants}, picture_readers().texture);
+    return io::read_scene(name, {scale, objects, heed_signals, variants, scene_name}, picture_readers().texture);
 }
 
 /// Returns the scene after change(static geometry), a function of a Scene&. Throws InputError if the result is invalid.
@@ -159,11 +159,12 @@ their own.)");
     scene_class
         .def_static(
             "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
-            "variants"_a = std::vector<std::string>{},
+            "variants"_a = std::vector<std::string>{}, "scene_name"_a = "",
             R"(Reads a scene file: .obj (with its .mtl), .gltf, .glb, .ply, or a stage of USD (.usd, .usda, .usdc
 or .usdz; realcam[usd]).
 scale: metres per unit of the file; for a stage, a factor on its metersPerUnit.
 variants: variants of a stage, such as "/Chair{color=red}".
+scene_name: name or index of a scene in a glTF file; "": the file's own.
 objects: names of nodes (in an OBJ file: of "o" or "g" statements) that become instances, with all their descendants,
   so that moved() can move them. The second of several nodes "car" is called "car.2".
 Minor faults of the file are listed in warnings. Only regular files are read. Raises SceneFileError, and

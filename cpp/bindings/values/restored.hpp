@@ -53,6 +53,8 @@ inline constexpr auto kLastEnumerator<CameraModel> = CameraModel::full_lens_doub
 template <>
 inline constexpr auto kLastEnumerator<CameraKeyInterpolation> = CameraKeyInterpolation::step;
 template <>
+inline constexpr auto kLastEnumerator<KeyInterpolation> = KeyInterpolation::cubic_spline;
+template <>
 inline constexpr auto kLastEnumerator<MaterialModel> = MaterialModel::metallic_roughness;
 template <>
 inline constexpr auto kLastEnumerator<FresnelTerm> = FresnelTerm::physical;

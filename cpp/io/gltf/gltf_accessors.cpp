@@ -15,14 +15,6 @@ static_assert(std::endian::native == std::endian::little);
 /// Greatest number of elements of an accessor without a bufferView, whose elements are 0 except for the sparse ones.
 constexpr std::size_t kMaxWithoutBytes = std::size_t{1} << 20;
 
-/// Number of components of an element.
-std::size_t components_of(std::string_view type) {
-    if (type == "SCALAR") return 1;
-    if (type == "VEC2") return 2;
-    if (type == "VEC3") return 3;
-    return type == "MAT4" ? 16 : 4;
-}
-
 /// Array of elements of one component type.
 struct Elements {
     std::string_view bytes;
@@ -84,10 +76,21 @@ std::vector<Value> values_of(const Elements& from, Checkpoint& checkpoint) {
         case kGltfUnsignedShort: copy_elements<std::uint16_t>(from, to, checkpoint); break;
         case kGltfUnsignedInt: copy_elements<std::uint32_t>(from, to, checkpoint); break;
         default:
-            // Floats instead of integers have been rejected by read_view.
+            // Floats instead of integers have been rejected by element_size.
             if constexpr (std::is_same_v<Value, float>) copy_elements<float>(from, to, checkpoint);
     }
     return to;
+}
+
+/// Returns the size of an element in bytes. Throws SceneFileError, whose message begins with `where`, for a component
+/// type that is invalid for numbers of type Value.
+template <class Value>
+std::size_t element_size(const GltfDocument& document, std::size_t component_type, std::size_t components,
+                         const std::string& where) {
+    const std::size_t size = size_of_component(component_type) * components;
+    if (size == 0 || (component_type == kGltfFloat && !std::is_same_v<Value, float>))
+        document.fail(where + ": its componentType is not valid here");
+    return size;
 }
 
 /// Reads elements through a buffer view. `from`: an accessor, or the indices or values of a sparse one, with bufferView
@@ -96,9 +99,7 @@ template <class Value>
 std::vector<Value> read_view(const GltfDocument& document, GltfBuffers& buffers, Checkpoint& checkpoint,
                              const Json& from, std::size_t components, std::size_t count, const Json& component_type,
                              bool normalised, const std::string& where) {
-    const std::size_t type = component_type.index(0), size = size_of_component(type) * components;
-    if (size == 0 || (type == kGltfFloat && !std::is_same_v<Value, float>))
-        document.fail(where + ": its componentType is not valid here");
+    const std::size_t type = component_type.index(0), size = element_size<Value>(document, type, components, where);
     std::string_view bytes = buffers.view(from["bufferView"], where);
     const std::size_t offset = from["byteOffset"].index(0);
     const Json& view = document.root()["bufferViews"][from["bufferView"].index(0)];
@@ -113,6 +114,13 @@ std::vector<Value> read_view(const GltfDocument& document, GltfBuffers& buffers,
 }
 
 }  // namespace
+
+std::size_t components_of(std::string_view type) {
+    if (type == "SCALAR") return 1;
+    if (type == "VEC2") return 2;
+    if (type == "VEC3") return 3;
+    return type == "MAT4" ? 16 : 4;
+}
 
 std::size_t GltfAccessors::count(const Json& reference) const {
     const Json& accessors = document_.root()["accessors"];
@@ -147,6 +155,15 @@ std::vector<Value> GltfAccessors::read(const Json& reference, const std::string&
     const Json& accessor = document_.root()["accessors"][*index];
     if (accessor["type"].text() != type) document_.fail(where + ": expected elements of type " + type);
     const std::size_t count = accessor["count"].index(0), components = components_of(type);
+    if (const auto decoded = decoded_.find(*index); decoded != decoded_.end()) {
+        const auto& [bytes, component_type] = decoded->second;
+        const std::size_t size = element_size<Value>(document_, component_type, components, where);
+        if (bytes.size() / size != count)
+            document_.fail(where + ": has " + std::to_string(count) + " elements, and its compressed mesh " +
+                           std::to_string(bytes.size() / size));
+        return values_of<Value>({bytes, component_type, components, count, size, accessor["normalized"].is_true()},
+                                checkpoint_);
+    }
     std::vector<Value> values;
     if (!accessor["bufferView"].is_null())
         values = read_view<Value>(document_, buffers_, checkpoint_, accessor, components, count,

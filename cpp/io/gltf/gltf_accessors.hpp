@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gltf_buffers.hpp"
@@ -16,6 +18,16 @@ enum GltfComponentType : std::size_t {
     kGltfUnsignedInt = 5125,
     kGltfFloat = 5126
 };
+
+/// Number of components of an element of an accessor's type, such as 3 for "VEC3".
+std::size_t components_of(std::string_view type);
+
+/// Elements of accessors that come from a compressed mesh, by the accessor's index. They are stored without padding.
+struct DecodedElements {
+    std::string bytes;
+    std::size_t component_type;  ///< see GltfComponentType
+};
+using DecodedAccessors = std::map<std::size_t, DecodedElements>;
 
 /// Reads the numbers of a glTF's accessors: of any component type, with normalised integers converted to fractions and
 /// sparse accessors assembled.
@@ -33,6 +45,9 @@ public:
     /// Returns all elements as whole numbers, like numbers(). Throws SceneFileError also for an accessor of floats.
     std::vector<std::uint32_t> integers(const Json& reference, const std::string& type, const std::string& where);
 
+    /// Sets elements that replace those of their accessors, until the next call.
+    void set_decoded(DecodedAccessors decoded) { decoded_ = std::move(decoded); }
+
     /// Returns the number of elements that an accessor declares; 0 if it does not exist.
     std::size_t count(const Json& reference) const;
 
@@ -47,6 +62,7 @@ private:
     const GltfDocument& document_;
     GltfBuffers& buffers_;
     Checkpoint& checkpoint_;
+    DecodedAccessors decoded_;
 };
 
 }  // namespace realcam::io

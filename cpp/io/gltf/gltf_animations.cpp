@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "../../math/motion.hpp"
 #include "../text/printable.hpp"
@@ -27,9 +29,10 @@ public:
         for (std::size_t i = 0; i < file_indices.size(); ++i) node_index_[file_indices[i]] = i;
     }
 
-    void read() {
+    GltfTargetWeights read() {
         const Json& channels = animation_["channels"];
-        std::size_t other_paths = 0, weights = 0, with_matrix = 0;  // numbers of channels that are not supported
+        std::size_t other_paths = 0, without_targets = 0,
+                    with_matrix = 0;  // numbers of channels that are not supported
         for (std::size_t c = 0; c < channels.size(); ++c) {
             checkpoint_.pass();
             const Json& target = channels[c]["target"];
@@ -38,19 +41,28 @@ public:
             const std::optional<std::size_t> node = document_.find("nodes", target["node"], where + ": its node");
             if (!node || !node_index_.contains(*node)) continue;
             if (path == "weights") {
-                ++weights;
+                const std::size_t targets = target_count(*node);
+                if (targets == 0) {
+                    ++without_targets;
+                    continue;
+                }
+                const auto keys = keys_of(channels[c]["sampler"], "SCALAR", targets, where);
+                target_weights_[*node] = {keys, changes(keys)};
             } else if (path != "translation" && path != "rotation" && path != "scale") {
                 ++other_paths;
             } else if (!document_.root()["nodes"][*node]["matrix"].is_null()) {
                 ++with_matrix;
             } else {
-                set_keys(*node, path, keys_of(channels[c]["sampler"], path == "rotation" ? 4 : 3, where));
+                const std::size_t components = path == "rotation" ? 4 : 3;
+                set_keys(*node, path,
+                         keys_of(channels[c]["sampler"], components == 4 ? "VEC4" : "VEC3", components, where));
             }
         }
         remove_constant_motions();
-        warn(weights, "channels animate the weights of morph targets, which remain constant");
-        warn(other_paths, "channels animate something else than translation, rotation and scale");
+        warn(other_paths, "channels animate something else than translation, rotation, scale and weights");
+        warn(without_targets, "channels animate the weights of a mesh without morph targets");
         warn(with_matrix, "channels animate nodes that have a matrix, which remain static");
+        return std::move(target_weights_);
     }
 
 private:
@@ -58,14 +70,21 @@ private:
         if (count > 0) scene_.warnings.push_back(label_ + ": " + std::to_string(count) + ' ' + problem);
     }
 
+    /// Returns the number of morph targets of a node's mesh. `node`: index in the file.
+    std::size_t target_count(std::size_t node) const {
+        const Json& meshes = document_.root()["meshes"];
+        const Json& mesh = meshes[document_.root()["nodes"][node]["mesh"].index(meshes.size())];
+        return mesh["primitives"][std::size_t{0}]["targets"].size();
+    }
+
     /// Animates a node. `index`: of the node in the file; `path`: translation, rotation or scale.
-    void set_keys(std::size_t index, const std::string& path, std::shared_ptr<const FileKeys> keys) {
+    void set_keys(std::size_t index, const std::string& path, std::shared_ptr<const VectorKeys> keys) {
         FileNode& node = scene_.nodes[node_index_[index]];
         if (node.motion < 0) {
             node.motion = static_cast<std::int32_t>(scene_.motions.size());
             scene_.motions.push_back(static_motion(document_.root()["nodes"][index]));
         }
-        FileMotion& motion = scene_.motions[static_cast<std::size_t>(node.motion)];
+        NodeMotion& motion = scene_.motions[static_cast<std::size_t>(node.motion)];
         (path == "translation" ? motion.translation_keys
          : path == "rotation"  ? motion.rotation_keys
                                : motion.scale_keys) = std::move(keys);
@@ -76,7 +95,7 @@ private:
         for (FileNode& node : scene_.nodes) {
             if (node.motion < 0) continue;
             checkpoint_.pass();
-            const FileMotion& motion = scene_.motions[static_cast<std::size_t>(node.motion)];
+            const NodeMotion& motion = scene_.motions[static_cast<std::size_t>(node.motion)];
             if (changes(motion.translation_keys) || changes(motion.rotation_keys) || changes(motion.scale_keys))
                 continue;
             node.parent_from_node = motion.parent_from_node(0);
@@ -85,34 +104,28 @@ private:
     }
 
     /// True if keys are not constant.
-    bool changes(const std::shared_ptr<const FileKeys>& keys) {
+    bool changes(const std::shared_ptr<const VectorKeys>& keys) {
         if (!keys) return false;
         const auto [known, is_new] = changes_.try_emplace(keys.get());
-        if (!is_new) return known->second;
-        const bool is_spline = keys->interpolation == KeyInterpolation::cubic_spline;
-        const std::size_t components = keys->components, vectors = keys->values.size() / components;
-        for (std::size_t i = 0; i < vectors; ++i)
-            for (std::size_t c = 0; c < components; ++c) {
-                const bool is_tangent = is_spline && i % 3 != 1;
-                const float if_constant = is_tangent ? 0 : keys->values[(is_spline ? 1 : 0) * components + c];
-                if (keys->values[i * components + c] != if_constant) known->second = true;
-            }
+        if (is_new) known->second = keys->changes();
         return known->second;
     }
 
-    /// Returns the keys of a sampler, which is read on first use.
-    std::shared_ptr<const FileKeys> keys_of(const Json& reference, std::size_t components, const std::string& where) {
+    /// Returns the keys of a sampler, which is read on first use. `type`: of its output's accessor; `components`:
+    /// numbers of a vector.
+    std::shared_ptr<const VectorKeys> keys_of(const Json& reference, const std::string& type, std::size_t components,
+                                              const std::string& where) {
         const Json& samplers = animation_["samplers"];
         const std::size_t index = reference.index(samplers.size());
         if (index >= samplers.size()) document_.fail(where + ": its sampler does not exist");
-        const auto [known, is_new] = samplers_.try_emplace({index, components});
-        if (is_new) known->second = read_sampler(samplers[index], components, where);
+        const auto [known, is_new] = samplers_.try_emplace({index, components, type});
+        if (is_new) known->second = read_sampler(samplers[index], type, components, where);
         return known->second;
     }
 
-    std::shared_ptr<const FileKeys> read_sampler(const Json& sampler, std::size_t components,
-                                                 const std::string& where) {
-        auto keys = std::make_shared<FileKeys>();
+    std::shared_ptr<const VectorKeys> read_sampler(const Json& sampler, const std::string& type, std::size_t components,
+                                                   const std::string& where) {
+        auto keys = std::make_shared<VectorKeys>();
         keys->components = components;
         const std::string& interpolation = sampler["interpolation"].text();
         if (interpolation == "STEP") {
@@ -130,7 +143,7 @@ private:
                 document_.fail(where + ": its times must be strictly increasing");
             keys->times.push_back(seconds);
         }
-        keys->values = accessors_.numbers(sampler["output"], components == 4 ? "VEC4" : "VEC3", where + ": its output");
+        keys->values = accessors_.numbers(sampler["output"], type, where + ": its output");
         for (const float value : keys->values)
             if (!std::isfinite(value)) document_.fail(where + ": its output holds a number that is not finite");
         const std::size_t values_per_time = keys->interpolation == KeyInterpolation::cubic_spline ? 3 : 1;
@@ -148,21 +161,20 @@ private:
     std::string label_;
     Checkpoint& checkpoint_;
     std::map<std::size_t, std::size_t> node_index_;  ///< index in the scene of each node of the file
-    /// Keys that have been read, by index of the sampler and number of components.
-    std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<const FileKeys>> samplers_;
-    std::map<const FileKeys*, bool> changes_;  ///< results of changes()
+    GltfTargetWeights target_weights_;
+    /// Keys that have been read, by index of the sampler, number of components, and type of its output.
+    std::map<std::tuple<std::size_t, std::size_t, std::string>, std::shared_ptr<const VectorKeys>> samplers_;
+    std::map<const VectorKeys*, bool> changes_;  ///< results of changes()
 };
 
 }  // namespace
 
-void read_gltf_animations(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
-                          const std::vector<std::size_t>& file_indices, Checkpoint& checkpoint) {
+GltfTargetWeights read_gltf_animations(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
+                                       const std::vector<std::size_t>& file_indices, Checkpoint& checkpoint) {
     const std::size_t count = document.root()["animations"].size();
-    if (count == 0) return;
-    AnimationReader(scene, document, accessors, file_indices, checkpoint).read();
+    if (count == 0) return {};
     if (count > 1) scene.warnings.push_back("of " + std::to_string(count) + " animations only the first is played");
-    if (document.root()["skins"].size() > 0 && !scene.motions.empty())
-        scene.warnings.push_back("skins are not animated; they have the pose of their joints without the animation");
+    return AnimationReader(scene, document, accessors, file_indices, checkpoint).read();
 }
 
 }  // namespace realcam::io

@@ -7,6 +7,7 @@
 #include "../files/regular_file.hpp"
 #include "../files/uri.hpp"
 #include "../text/printable.hpp"
+#include "gltf_compression.hpp"
 #include "gltf_readers.hpp"
 
 namespace realcam::io {
@@ -49,16 +50,25 @@ std::string_view GltfBuffers::view(const Json& reference, const std::string& whe
     const std::optional<std::size_t> index = document_.find("bufferViews", reference, where);
     if (!index) document_.fail(where + ": names no bufferView");
     const Json& view = document_.root()["bufferViews"][*index];
-    for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+    const std::string label = where + ": bufferView " + std::to_string(*index);
+    for (const char* extension : kMeshopt) {
+        const Json& compression = view["extensions"][extension];
+        if (compression.is_null()) continue;
         const Json& buffers = document_.root()["buffers"];
         const Json& buffer = buffers[view["buffer"].index(buffers.size())];
         // There may be uncompressed bytes beside the compressed ones; otherwise the buffer is only declared.
         const bool has_uncompressed = !buffer["uri"].is_null() || buffer["extensions"][extension].is_null();
-        if (!view["extensions"][extension].is_null() && !has_uncompressed)
-            document_.fail(where + ": its numbers are in the glTF extension " + extension +
-                           ", which is not read; export it without compression");
+        if (!missing_library(extension).empty() && has_uncompressed) continue;
+        auto found = decoded_.find(*index);
+        if (found == decoded_.end())
+            found = decoded_.emplace(*index, decode_meshopt(document_, compression, slice(compression, label), label))
+                        .first;
+        return found->second;
     }
-    const std::string label = where + ": bufferView " + std::to_string(*index);
+    return slice(view, label);
+}
+
+std::string_view GltfBuffers::slice(const Json& view, const std::string& label) {
     const std::optional<std::size_t> buffer_index = document_.find("buffers", view["buffer"], label);
     if (!buffer_index) document_.fail(label + ": names no buffer");
     const std::string_view bytes = buffer(*buffer_index);

@@ -6,6 +6,7 @@
 
 #include "../../error.hpp"
 #include "../text/printable.hpp"
+#include "gltf_compression.hpp"
 
 namespace realcam::io {
 namespace {
@@ -17,12 +18,13 @@ constexpr std::size_t kGlbHeader = 12, kChunkHeader = 8;  // in bytes
 bool may_be_required(std::string_view extension) {
     return extension == "KHR_lights_punctual" || extension == "KHR_texture_transform" ||
            extension == "KHR_mesh_quantization" || extension == "EXT_mesh_gpu_instancing" ||
-           extension == "EXT_texture_webp" || extension.starts_with("KHR_materials_");
+           extension == "EXT_texture_webp" || extension == kDraco || extension == kMeshopt[0] ||
+           extension == kMeshopt[1] || extension.starts_with("KHR_materials_");
 }
 
 /// Returns advice for a file that requires an unsupported extension.
 std::string advice(std::string_view extension) {
-    if (extension.ends_with("_compression")) return "export it without compression";
+    if (extension == "KHR_texture_basisu") return "export its KTX2 pictures as PNG, JPEG or WebP";
     if (extension.find("_texture_") != std::string_view::npos) return "export its pictures as PNG or JPEG";
     return "export it without that extension";
 }

@@ -6,11 +6,12 @@
 
 namespace realcam::io {
 
-/// Reads a glTF 2.0 file (.gltf or .glb). Skins and morph targets are applied for the static pose of the nodes; nodes
-/// are animated by the file's first animation. Throws FileError, and SceneFileError that names the element.
-FileScene read_gltf(const std::string& path, Checkpoint& checkpoint);
+/// Reads a glTF 2.0 file (.gltf or .glb). Nodes, skins and morph targets are animated by the file's first animation;
+/// skins and morph targets that it does not move are applied. `scene_name`: name or index of the scene; empty: the
+/// file's own. Throws FileError, and SceneFileError that names the element.
+FileScene read_gltf(const std::string& path, const std::string& scene_name, Checkpoint& checkpoint);
 
 /// read_gltf for the bytes of a file. `path`: names them in messages; files are found beside it.
-FileScene parse_gltf(const std::string& path, std::string bytes, Checkpoint& checkpoint);
+FileScene parse_gltf(const std::string& path, std::string bytes, const std::string& scene_name, Checkpoint& checkpoint);
 
 }  // namespace realcam::io

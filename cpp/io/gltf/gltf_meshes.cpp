@@ -29,20 +29,26 @@ std::vector<Vec3<T>> vectors_of(const std::vector<float>& numbers) {
 
 }  // namespace
 
-GltfMeshes::Range GltfMeshes::add(std::size_t mesh, const Json& node_weights, const std::optional<JointMaps>& joints) {
+std::vector<double> target_weights_of(const Json& list) {
+    std::vector<double> weights;
+    for (std::size_t i = 0; i < list.size(); ++i) weights.push_back(list[i].number(0));
+    return weights;
+}
+
+GltfMeshes::Range GltfMeshes::add(std::size_t mesh, const GltfShape& shape) {
     const Json& from = document_.root()["meshes"][mesh];
-    const bool is_undeformed = !joints && node_weights.is_null();
-    if (const auto known = added_.find(mesh); is_undeformed && known != added_.end()) return known->second;
+    if (const auto known = added_.find(mesh); shape.is_plain() && known != added_.end()) return known->second;
     const Json& primitives = from["primitives"];
     const Range range{static_cast<std::uint32_t>(scene_.meshes.size()), static_cast<std::uint32_t>(primitives.size())};
+    const std::vector<double> weights =
+        shape.target_weights.empty() ? target_weights_of(from["weights"]) : shape.target_weights;
     for (std::size_t p = 0; p < primitives.size(); ++p) {
         std::string label = gltf_label("mesh", mesh, from);
         if (primitives.size() > 1) label += ", primitive " + std::to_string(p);
         const std::uint32_t material = material_of(primitives[p], label);
-        add_primitive(
-            {primitives[p], node_weights.is_null() ? from["weights"] : node_weights, joints, label, material});
+        add_primitive({primitives[p], weights, shape, label, material});
     }
-    if (is_undeformed) added_.emplace(mesh, range);
+    if (shape.is_plain()) added_.emplace(mesh, range);
     return range;
 }
 
@@ -56,20 +62,63 @@ std::uint32_t GltfMeshes::material_of(const Json& primitive, const std::string& 
     return *default_material_;
 }
 
-void GltfMeshes::check_compression(const Primitive& primitive) const {
-    constexpr const char* kDraco = "KHR_draco_mesh_compression";
-    if (primitive.json["extensions"][kDraco].is_null()) return;
+bool GltfMeshes::has_uncompressed(const Primitive& primitive) const {
     const Json& accessors = document_.root()["accessors"];
     for (const Json* reference : {&primitive.json["attributes"]["POSITION"], &primitive.json["indices"]}) {
         const Json& accessor = accessors[reference->index(accessors.size())];
-        if (accessor.is_null() || !accessor["bufferView"].is_null() || !accessor["sparse"].is_null()) continue;
-        document_.fail(primitive.label + ": its triangles are in the glTF extension " + kDraco +
-                       ", which is not read; export it without compression");
+        if (!accessor.is_null() && accessor["bufferView"].is_null() && accessor["sparse"].is_null()) return false;
     }
+    return true;
+}
+
+std::vector<std::string> GltfMeshes::attribute_names(const Primitive& primitive) const {
+    std::vector<std::string> names = {"POSITION", "NORMAL", "COLOR_0"};
+    for (const std::uint32_t set : scene_.materials[primitive.material].uv_sets())
+        names.push_back("TEXCOORD_" + std::to_string(set));
+    for (std::size_t set = 0; set < kMaxJointSets; ++set)
+        for (const char* name : {"JOINTS_", "WEIGHTS_"}) names.push_back(name + std::to_string(set));
+    return names;
+}
+
+void GltfMeshes::decode(const Primitive& primitive) {
+    accessors_.set_decoded({});
+    const Json& draco = primitive.json["extensions"][kDraco];
+    if (draco.is_null() || (!missing_library(kDraco).empty() && has_uncompressed(primitive))) return;
+    const Json &list = document_.root()["accessors"], &attributes = primitive.json["attributes"];
+    const auto find = [&](const Json& reference, const std::string& name) {
+        const auto index = document_.find("accessors", reference, primitive.label + ": " + name);
+        if (!index) document_.fail(primitive.label + ": has no " + name + ", which a Draco mesh needs");
+        return *index;
+    };
+    if (primitive.json["mode"].index(kTriangles) != kTriangles)
+        document_.fail(primitive.label + ": a Draco mesh must have the mode 4, triangles");
+    const std::size_t indices = find(primitive.json["indices"], "indices");
+    const DracoSize size{list[find(attributes["POSITION"], "POSITION")]["count"].index(0),
+                         list[indices]["count"].index(0) / 3};
+    std::vector<DracoAttribute> requests;
+    std::vector<std::size_t> accessors;
+    for (const std::string& name : attribute_names(primitive)) {
+        const Json& id = draco["attributes"][name];
+        if (id.is_null()) continue;
+        accessors.push_back(find(attributes[name], name));
+        const Json& accessor = list[accessors.back()];
+        requests.push_back({id.index(0), accessor["componentType"].index(0), components_of(accessor["type"].text())});
+    }
+    const std::string label = primitive.label + ": its compressed mesh";
+    DracoMesh mesh =
+        decode_draco(document_, buffers_.view(draco["bufferView"], label), size, requests, primitive.label);
+    checkpoint_.pass(size.vertices + size.triangles);
+    DecodedAccessors decoded;
+    decoded[indices] = {
+        std::string(reinterpret_cast<const char*>(mesh.indices.data()), mesh.indices.size() * sizeof(std::uint32_t)),
+        kGltfUnsignedInt};
+    for (std::size_t i = 0; i < requests.size(); ++i)
+        decoded[accessors[i]] = {std::move(mesh.attributes[i]), requests[i].component_type};
+    accessors_.set_decoded(std::move(decoded));
 }
 
 void GltfMeshes::add_primitive(const Primitive& primitive) {
-    check_compression(primitive);
+    decode(primitive);
     FileMesh mesh;
     mesh.label = primitive.label;
     mesh.vertices = vertices_of(primitive);
@@ -88,8 +137,8 @@ void GltfMeshes::check_memory(const FileMesh& mesh) {
     next_check_ = 2 * bytes_;
 }
 
-double GltfMeshes::deformed_bytes(std::size_t mesh, bool is_skinned) {
-    const auto [known, is_new] = deformed_bytes_.try_emplace({mesh, is_skinned}, 0.0);
+double GltfMeshes::deformed_bytes(std::size_t mesh, bool is_skinned, bool has_moving_targets) {
+    const auto [known, is_new] = deformed_bytes_.try_emplace({mesh, is_skinned, has_moving_targets}, 0.0);
     if (!is_new) return known->second;
     const Json &accessors = document_.root()["accessors"], &primitives = document_.root()["meshes"][mesh]["primitives"];
     const auto count_of = [&](const Json& accessor) {
@@ -105,6 +154,9 @@ double GltfMeshes::deformed_bytes(std::size_t mesh, bool is_skinned) {
         // Twice: here, and in the flattened scene.
         known->second += 2 * sizeof(Triangle) * triangles;
         if (is_skinned || !primitive["targets"].is_null()) known->second += kBytesPerVertex * vertices;
+        // Twice as well, with positions and normals.
+        if (has_moving_targets)
+            known->second += 4 * sizeof(Vec3f) * vertices * static_cast<double>(primitive["targets"].size());
     }
     return known->second;
 }
@@ -125,7 +177,7 @@ std::uint32_t GltfMeshes::vertices_of(const Primitive& primitive) {
     constexpr std::size_t kNone = static_cast<std::size_t>(-1);
     const Attributes key{attributes["POSITION"].index(kNone), attributes["NORMAL"].index(kNone), uvs_of(0).index(kNone),
                          uvs_of(1).index(kNone), attributes["COLOR_0"].index(kNone)};
-    const bool may_share = !primitive.joints && primitive.json["targets"].is_null();
+    const bool may_share = !primitive.shape.is_skinned() && primitive.json["targets"].is_null();
     if (const auto known = shared_vertices_.find(key); may_share && known != shared_vertices_.end())
         return known->second;
     const auto index = static_cast<std::uint32_t>(scene_.vertices.size());
@@ -160,11 +212,12 @@ FileVertices GltfMeshes::read_vertices(const Primitive& primitive, const Json& u
         out.colours = read_colours(attributes["COLOR_0"], label + ": COLOR_0");
         check_count(out.colours.size(), count, label + ": COLOR_0");
     }
-    apply_targets(primitive, out);
-    if (primitive.joints) {
-        const JointWeights weights =
-            read_joint_weights(document_, accessors_, attributes, count, primitive.joints->size(), label);
-        apply_skin(out, weights, *primitive.joints, checkpoint_);
+    read_targets(primitive, out);
+    if (primitive.shape.is_skinned()) {
+        const std::optional<JointMaps>& joints = primitive.shape.joints;
+        out.joints = read_joint_weights(document_, accessors_, attributes, count,
+                                        joints ? joints->size() : primitive.shape.moving_joints, label);
+        if (joints) apply_skin(out.positions, out.normals, std::exchange(out.joints, {}), *joints, checkpoint_);
     }
     for (std::size_t v = 0; v < count; ++v) {
         if (!in_reach(out.positions[v]) && !is_finite(out.positions[v]))
@@ -194,22 +247,27 @@ std::vector<VertexColor> GltfMeshes::read_colours(const Json& reference, const s
     return out;
 }
 
-void GltfMeshes::apply_targets(const Primitive& primitive, FileVertices& vertices) {
-    const Json& targets = primitive.json["targets"];
-    for (std::size_t t = 0; t < targets.size(); ++t) {
-        const double weight = primitive.weights[t].number(0);
-        if (weight == 0) continue;
-        const std::string where = primitive.label + ": target " + std::to_string(t);
-        const auto deltas = [&](const char* name) {
-            if (targets[t][name].is_null()) return std::vector<Vec3d>();
-            const std::vector<Vec3d> out = vectors_of<double>(accessors_.numbers(targets[t][name], "VEC3", where));
-            check_count(out.size(), vertices.positions.size(), where);
-            return out;
-        };
-        const std::vector<Vec3d> positions = deltas("POSITION"), normals = deltas("NORMAL");
-        for (std::size_t v = 0; v < positions.size(); ++v) vertices.positions[v] += weight * positions[v];
-        if (vertices.normals.empty()) continue;
-        for (std::size_t v = 0; v < normals.size(); ++v) vertices.normals[v] += static_cast<Vec3f>(weight * normals[v]);
+MorphTarget GltfMeshes::read_target(const Primitive& primitive, std::size_t target, std::size_t vertices) {
+    const std::string where = primitive.label + ": target " + std::to_string(target);
+    const Json& json = primitive.json["targets"][target];
+    const auto deltas = [&](const char* name) {
+        if (json[name].is_null()) return std::vector<Vec3f>();
+        const std::vector<Vec3f> out = vectors_of<float>(accessors_.numbers(json[name], "VEC3", where));
+        check_count(out.size(), vertices, where);
+        return out;
+    };
+    return {deltas("POSITION"), deltas("NORMAL")};
+}
+
+void GltfMeshes::read_targets(const Primitive& primitive, FileVertices& vertices) {
+    const std::size_t count = vertices.positions.size(), targets = primitive.json["targets"].size();
+    for (std::size_t t = 0; t < targets; ++t) {
+        if (t < primitive.shape.moving_targets) {
+            vertices.targets.push_back(read_target(primitive, t, count));
+        } else if (t < primitive.target_weights.size() && primitive.target_weights[t] != 0) {
+            add_target(vertices.positions, vertices.normals, read_target(primitive, t, count),
+                       primitive.target_weights[t]);
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 #include "gltf_nodes.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -8,7 +9,7 @@
 #include "../../math/affine.hpp"
 #include "../../math/interpolate_affine.hpp"
 #include "../files/regular_file.hpp"
-#include "../scene/file_motion.hpp"
+#include "../text/help_page.hpp"
 #include "../text/printable.hpp"
 #include "gltf_accessors.hpp"
 
@@ -49,7 +50,7 @@ std::vector<Affine<double>> instances_of(const Json& node, GltfAccessors& access
     std::vector<Affine<double>> out;
     out.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
-        FileMotion transform;
+        NodeMotion transform;
         if (!translations.empty()) transform.translation = vector_at(translations, 3 * i);
         if (!scales.empty()) transform.scale = vector_at(scales, 3 * i);
         if (!rotations.empty()) {
@@ -71,9 +72,10 @@ public:
           accessors_(accessors),
           checkpoint_(checkpoint) {}
 
-    GltfNodeIndices read() {
+    /// See read_gltf_nodes.
+    GltfNodeIndices read(const std::string& scene_name) {
         find_parents();
-        const std::vector<std::size_t> roots = find_roots();
+        const std::vector<std::size_t> roots = find_roots(scene_name);
         for (const std::size_t root : roots) add_tree(root);
         return std::move(file_indices_);
     }
@@ -102,16 +104,46 @@ private:
         return reference;
     }
 
-    /// Returns the nodes of the file's scene; if the file has no scene, all nodes without a parent.
-    std::vector<std::size_t> find_roots() const {
+    /// Returns the index of the scene with a name, or of the scene that the name counts; std::nullopt if there is none.
+    std::optional<std::size_t> scene_named(const std::string& name) const {
+        const Json& scenes = document_.root()["scenes"];
+        for (std::size_t i = 0; i < scenes.size(); ++i)
+            if (printable(scenes[i]["name"].text()) == name) return i;
+        for (std::size_t i = 0; i < scenes.size(); ++i)
+            if (std::to_string(i) == name) return i;
+        return std::nullopt;
+    }
+
+    /// Returns the index of the scene to read (read_gltf_nodes).
+    std::size_t find_scene(const std::string& name) const {
+        const Json& root = document_.root();
+        const std::size_t count = root["scenes"].size();
+        if (name.empty()) {
+            const std::size_t scene = document_.find("scenes", root["scene"], "scene").value_or(0);
+            if (count > 1)
+                scene_.warnings.push_back("of " + std::to_string(count) + " scenes, " +
+                                          gltf_label("scene", scene, root["scenes"][scene]) + " is read");
+            return scene;
+        }
+        if (const std::optional<std::size_t> scene = scene_named(name)) return *scene;
+        std::set<std::string> names;
+        for (std::size_t i = 0; i < count; ++i) names.insert(printable(root["scenes"][i]["name"].text()));
+        names.erase("");
+        document_.fail("has no scene " + in_quotes(name.substr(0, 60)) +
+                       did_you_mean(name, {names.begin(), names.end()}) +
+                       "; expected the name or the index of one of its " + std::to_string(count) + " scenes");
+    }
+
+    /// Returns the roots of the scene to read; if the file has no scene, all nodes without a parent.
+    std::vector<std::size_t> find_roots(const std::string& scene_name) const {
         const Json& root = document_.root();
         std::vector<std::size_t> roots;
-        if (root["scenes"].size() == 0) {
+        if (root["scenes"].size() == 0 && scene_name.empty()) {
             for (std::size_t n = 0; n < nodes_.size(); ++n)
                 if (parents_[n] == kNoGltfNode) roots.push_back(n);
             return roots;
         }
-        const std::size_t scene = document_.find("scenes", root["scene"], "scene").value_or(0);
+        const std::size_t scene = find_scene(scene_name);
         const Json& listed = root["scenes"][scene]["nodes"];
         std::vector<bool> is_listed(nodes_.size(), false);
         for (std::size_t i = 0; i < listed.size(); ++i) {
@@ -206,8 +238,8 @@ private:
 }  // namespace
 
 GltfNodeIndices read_gltf_nodes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
-                                Checkpoint& checkpoint) {
-    return NodeReader(scene, document, accessors, checkpoint).read();
+                                const std::string& scene_name, Checkpoint& checkpoint) {
+    return NodeReader(scene, document, accessors, checkpoint).read(scene_name);
 }
 
 std::vector<Affine<double>> global_transforms(const std::vector<FileNode>& nodes) {
@@ -236,8 +268,8 @@ Affine<double> matrix_of(const Json& m) {
 
 }  // namespace
 
-FileMotion static_motion(const Json& node) {
-    FileMotion motion;
+NodeMotion static_motion(const Json& node) {
+    NodeMotion motion;
     const Json& q = node["rotation"];
     // The quaternion is not normalised: files round it to seven digits, and parent_from_node accepts any length.
     const Quaternion rotation = {vector_of(q, {0, 0, 0}), q[3].number(1)};

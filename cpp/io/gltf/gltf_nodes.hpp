@@ -1,10 +1,10 @@
 #pragma once
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "../../checkpoint.hpp"
 #include "../../math/affine.hpp"
-#include "../scene/file_motion.hpp"
 #include "../scene/file_scene.hpp"
 #include "../text/json.hpp"
 #include "gltf_accessors.hpp"
@@ -15,7 +15,7 @@ namespace realcam::io {
 Affine<double> transform_of(const Json& node);
 
 /// Returns a node's translation, rotation and scale as a motion without keys.
-FileMotion static_motion(const Json& node);
+NodeMotion static_motion(const Json& node);
 
 inline constexpr std::size_t kNoGltfNode = static_cast<std::size_t>(-1);
 
@@ -26,10 +26,11 @@ struct GltfNodeIndices {
     std::vector<std::size_t> meshes;  ///< the node whose mesh it has; kNoGltfNode if it has none
 };
 
-/// Sets scene.nodes to the nodes of the file's scene, without their meshes; if the file has no scene, to all of its
-/// nodes. Throws SceneFileError if the nodes do not form trees or have too many instances.
+/// Sets scene.nodes to the nodes of a scene of the file, without their meshes; if the file has no scene, to all of its
+/// nodes. `scene_name`: name or index of the scene; empty: the file's own, with a warning if there are others. Throws
+/// SceneFileError if there is no such scene, or the nodes do not form trees or have too many instances.
 GltfNodeIndices read_gltf_nodes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
-                                Checkpoint& checkpoint);
+                                const std::string& scene_name, Checkpoint& checkpoint);
 
 /// Returns the transform from each node's frame to the scene, in units of the file; `nodes` are in depth-first order.
 std::vector<Affine<double>> global_transforms(const std::vector<FileNode>& nodes);

@@ -1,5 +1,7 @@
 #pragma once
 #include <cstddef>
+#include <map>
+#include <memory>
 #include <vector>
 
 #include "../scene/file_scene.hpp"
@@ -11,10 +13,19 @@ namespace realcam::io {
 
 // Readers of the parts of a glTF file, which read_gltf calls.
 
-/// Animates the nodes of a scene by the file's first animation. Unsupported channels and further animations give
-/// warnings. `file_indices`: index in the file of each of scene.nodes. Throws SceneFileError.
-void read_gltf_animations(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
-                          const std::vector<std::size_t>& file_indices, Checkpoint& checkpoint);
+/// Keyframes of the weights of a node's morph targets.
+struct GltfTargetKeys {
+    std::shared_ptr<const VectorKeys> keys;  ///< null if there are none
+    bool change = false;  ///< they are not constant
+};
+/// The same by the index of the node in the file.
+using GltfTargetWeights = std::map<std::size_t, GltfTargetKeys>;
+
+/// Animates the nodes of a scene by the file's first animation, and returns the weights of their morph targets.
+/// Unsupported channels and further animations give warnings. `file_indices`: index in the file of each of scene.nodes.
+/// Throws SceneFileError.
+GltfTargetWeights read_gltf_animations(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
+                                       const std::vector<std::size_t>& file_indices, Checkpoint& checkpoint);
 
 /// Sets scene.pictures to the images of the file; embedded ones are still without their bytes.
 void list_pictures(FileScene& scene, const GltfDocument& document);

@@ -3,15 +3,17 @@
 // scene_lights and scene_materials make a Scene of it.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "../../math/affine.hpp"
+#include "../../math/keyframes.hpp"
 #include "../../math/vec3.hpp"
+#include "../../scene/deformation.hpp"
 #include "../../scene/scene_view.hpp"
-#include "file_motion.hpp"
 #include "gltf_material.hpp"
 #include "texture_transform.hpp"
 
@@ -75,6 +77,21 @@ struct FileVertices {
     std::vector<Vec2f> second_uvs;  ///< like uvs
     std::vector<VertexColor> colours;  ///< empty, or one per position; linear
     std::vector<std::uint32_t> position_ids;  ///< empty, or one per position: see Smoothing
+    std::vector<MorphTarget> targets;  ///< morph targets with weights that change over time
+    VertexJoints joints;  ///< joints of a skin that moves; indices in FileDeformation::joints
+};
+
+/// Joint of a skin.
+struct FileJoint {
+    std::uint32_t node;  ///< index in FileScene::nodes
+    Affine<double> node_from_rest;  ///< inverse bind matrix
+};
+
+/// Deformation of a node's meshes over time.
+struct FileDeformation {
+    std::shared_ptr<const VectorKeys> target_weights;  ///< null: no morph target of the meshes changes
+    std::vector<FileJoint> joints;  ///< empty: no skin moves the meshes, which are in the frame of the node;
+                                    ///< otherwise they are in that of the scene
 };
 
 /// Triangles of a file that share a list of vertices.
@@ -99,6 +116,7 @@ struct FileNode {
     std::int32_t light = -1;  ///< index in FileScene::lights, or -1
     std::int32_t camera = -1;  ///< index in FileScene::cameras, or -1
     std::int32_t motion = -1;  ///< index in FileScene::motions; -1 if the node does not move
+    std::int32_t deformation = -1;  ///< index in FileScene::deformations; -1 if its meshes do not deform
 };
 
 /// Picture used by materials.
@@ -129,7 +147,8 @@ struct FileScene {
     std::vector<FileVertices> vertices;
     std::vector<FileMesh> meshes;
     std::vector<FileNode> nodes;
-    std::vector<FileMotion> motions;
+    std::vector<NodeMotion> motions;
+    std::vector<FileDeformation> deformations;
     std::vector<FileMaterial> materials;
     std::vector<FilePicture> pictures;
     std::vector<FileLight> lights;

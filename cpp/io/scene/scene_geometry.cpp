@@ -26,8 +26,9 @@ bool has_normal(Vec3f n) {
 /// Implementation of read_geometry.
 class Flattener {
 public:
-    Flattener(Scene& scene, const ScenePart& part, const LeftOutFunction& leaves_out)
-        : scene_(scene), part_(part), file_(part.file), leaves_out_(leaves_out) {
+    Flattener(Scene& scene, const ScenePart& part, const LeftOutFunction& leaves_out,
+              std::vector<VertexSource>* sources)
+        : scene_(scene), part_(part), file_(part.file), leaves_out_(leaves_out), sources_(sources) {
         for (const FileMesh& mesh : file_.meshes) {
             any_normals_ |= !vertices_of(mesh).normals.empty();
             any_second_uvs_ |= !vertices_of(mesh).second_uvs.empty();
@@ -40,7 +41,7 @@ public:
     void flatten() {
         reserve_memory();
         for_each_mesh([&](const FileMesh& mesh, const Affine<double>& transform) { add_mesh(mesh, transform); });
-        if (!left_out_ || !scene_.triangles.empty())
+        if (!sources_ && (!left_out_ || !scene_.triangles.empty()))
             clean_geometry(scene_, std::move(smoothing_), file_.path, part_.checkpoint);
         warn_count(scene_, file_.path, bad_normals_, "normals are not finite; their faces are flat there");
         warn_count(scene_, file_.path, bad_uvs_, "texture coordinates are not finite, and are read as 0");
@@ -138,6 +139,7 @@ private:
                                  coordinates_error(p));
         known = static_cast<std::uint32_t>(scene_.positions_m.size());
         scene_.positions_m.push_back(p);
+        if (sources_) sources_->push_back({mesh.vertices, index});
         if (any_normals_)
             scene_.normals.push_back(from.normals.empty() ? Vec3f{0, 0, 0} : normal(from.normals[index], transform));
         if (any_uvs_) scene_.uvs.push_back(from.uvs.empty() ? Vec2f{0, 0} : uv(from.uvs[index]));
@@ -171,6 +173,7 @@ private:
     const ScenePart& part_;
     const FileScene& file_;
     const LeftOutFunction& leaves_out_;
+    std::vector<VertexSource>* sources_;
     bool left_out_ = false;  // anything was left out
     bool any_normals_ = false, any_uvs_ = false, any_second_uvs_ = false, any_colours_ = false,
          any_position_ids_ = false;
@@ -181,8 +184,9 @@ private:
 
 }  // namespace
 
-void read_geometry(Scene& scene, const ScenePart& part, const LeftOutFunction& leaves_out) {
-    Flattener(scene, part, leaves_out).flatten();
+void read_geometry(Scene& scene, const ScenePart& part, const LeftOutFunction& leaves_out,
+                   std::vector<VertexSource>* sources) {
+    Flattener(scene, part, leaves_out, sources).flatten();
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #include "../../error.hpp"
 #include "../text/help_page.hpp"
 #include "../text/printable.hpp"
+#include "scene_deformation.hpp"
 #include "scene_geometry.hpp"
 
 namespace realcam::io {
@@ -17,6 +18,12 @@ bool has_triangles(const FileScene& file, std::uint32_t node) {
     for (std::uint32_t i = node; i < file.nodes[node].end; ++i)
         if (file.nodes[i].mesh_count > 0) return true;
     return false;
+}
+
+/// Moves the warnings about an object to the static geometry.
+void move_warnings(Scene& object, Scene& static_geometry) {
+    static_geometry.warnings.insert(static_geometry.warnings.end(), object.warnings.begin(), object.warnings.end());
+    object.warnings.clear();
 }
 
 }  // namespace
@@ -56,6 +63,7 @@ LeftOut SceneObjects::left_out(std::uint32_t node, const Affine<double>& transfo
     if (names_.contains(file_.nodes[node].name) || moves(node)) return LeftOut::all;
     // A node scaled to zero, by which animations hide nodes, yields no triangles in the static geometry, and no valid
     // transform for an instance.
+    if (deforms(node)) return LeftOut::meshes;
     const bool is_shared =
         file_.nodes[node].mesh_count > 0 && shared_.contains(meshes_of(node)) && transform_error(transform).empty();
     return is_shared ? LeftOut::meshes : LeftOut::nothing;
@@ -64,6 +72,7 @@ LeftOut SceneObjects::left_out(std::uint32_t node, const Affine<double>& transfo
 void SceneObjects::add(std::uint32_t node, const Affine<double>& transform, Scene& static_geometry) {
     if (left_out(node, transform) == LeftOut::all)
         return add_node(node, transform, Instance::kNoParentInstance, static_geometry);
+    if (deforms(node)) return add_deforming(node, transform, Instance::kNoParentInstance, static_geometry);
     std::shared_ptr<Scene>& shared = shared_scenes_[meshes_of(node)];
     if (!shared) shared = read_meshes(node);
     add_scene(shared, node, transform, Instance::kNoParentInstance, static_geometry);
@@ -76,7 +85,7 @@ void SceneObjects::add_node(std::uint32_t node, const Affine<double>& transform,
     // Descendants that become instances of their own.
     const LeftOutFunction parts = [&](std::uint32_t index, const Affine<double>&) {
         const bool is_part = moves(index) || (!is_named && names_.contains(file_.nodes[index].name));
-        return index != node && is_part ? LeftOut::all : LeftOut::nothing;
+        return index != node && is_part ? LeftOut::all : deforms(index) ? LeftOut::meshes : LeftOut::nothing;
     };
     const auto scene = read_object(node, transform, parts, static_geometry);
     if (!scene->triangles.empty() || !scene->points.empty())
@@ -84,16 +93,28 @@ void SceneObjects::add_node(std::uint32_t node, const Affine<double>& transform,
     const std::ptrdiff_t parent = std::ssize(instances_) > next_instance ? next_instance : part_of;
     visit_nodes({file_, scale_, node, file_.nodes[node].end, transform, checkpoint_},
                 [&](std::uint32_t part, const Affine<double>& part_transform) {
-                    if (parts(part, part_transform) == LeftOut::nothing) return true;
-                    add_node(part, part_transform, parent, static_geometry);
-                    return false;
+                    if (parts(part, part_transform) == LeftOut::all) {
+                        add_node(part, part_transform, parent, static_geometry);
+                        return false;
+                    }
+                    if (deforms(part)) add_deforming(part, part_transform, parent, static_geometry);
+                    return true;
                 });
+}
+
+void SceneObjects::add_deforming(std::uint32_t node, const Affine<double>& transform, std::ptrdiff_t part_of,
+                                 Scene& static_geometry) {
+    const std::shared_ptr<Scene> scene = read_deforming_object(file_, node, scale_, checkpoint_);
+    const FileDeformation& deformation = file_.deformations[static_cast<std::size_t>(file_.nodes[node].deformation)];
+    if (deformation.joints.empty()) return add_scene(scene, node, transform, part_of, static_geometry);
+    // The transform of the node does not count for a skin, whose joints place the vertices in the scene.
+    instances_.push_back({scene, Instance{nullptr, Affine<double>(), file_.nodes[node].name, part_of}});
+    move_warnings(*scene, static_geometry);
 }
 
 void SceneObjects::add_scene(const std::shared_ptr<Scene>& scene, std::uint32_t node, const Affine<double>& transform,
                              std::ptrdiff_t part_of, Scene& static_geometry) {
-    static_geometry.warnings.insert(static_geometry.warnings.end(), scene->warnings.begin(), scene->warnings.end());
-    scene->warnings.clear();
+    move_warnings(*scene, static_geometry);
     const AnimatedTransform animated = placement(node, transform);
     if (animated.motion == nullptr && file_.nodes[node].motion >= 0 &&
         !transform_error(animated.scene_from_object).empty()) {

@@ -12,8 +12,8 @@
 namespace realcam::io {
 
 /// Selects the parts of a file that become instances instead of static geometry, and makes these instances. Such parts
-/// are nodes that the caller names, and nodes that move, each with its descendants that do not move on their own; and
-/// meshes that are used so often that instancing saves memory.
+/// are nodes that the caller names, and nodes that move, each with its descendants that do not move on their own;
+/// meshes that deform; and meshes that are used so often that instancing saves memory.
 class SceneObjects {
 public:
     /// `scale`: metres per unit of the file; `names`: nodes that become instances. All arguments must outlive the
@@ -41,6 +41,9 @@ private:
 
     /// Adds a node and, as its parts, the descendants that move or are named. `part_of`: index of the parent instance.
     void add_node(std::uint32_t node, const Affine<double>& transform, std::ptrdiff_t part_of, Scene& static_geometry);
+    /// Adds the instance of the meshes of a node that deform.
+    void add_deforming(std::uint32_t node, const Affine<double>& transform, std::ptrdiff_t part_of,
+                       Scene& static_geometry);
     /// Adds the instance of a node whose object is `scene`, or a warning if it is scaled to zero while it moves.
     void add_scene(const std::shared_ptr<Scene>& scene, std::uint32_t node, const Affine<double>& transform,
                    std::ptrdiff_t part_of, Scene& static_geometry);
@@ -50,6 +53,8 @@ private:
                                        const LeftOutFunction& leaves_out, Scene& static_geometry) const;
     /// True if a node moves within its parent and has visible content.
     bool moves(std::uint32_t node) const { return file_.nodes[node].motion >= 0 && shows_[node]; }
+    /// True if the meshes of a node deform.
+    bool deforms(std::uint32_t node) const { return file_.nodes[node].deformation >= 0; }
     /// Returns the transform of a node to the scene, in metres, at a time in seconds.
     Affine<double> transform_at(std::uint32_t node, double time);
     /// Reads the meshes of a node, without its descendants, in the node's frame.

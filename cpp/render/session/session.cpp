@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "../layers/motion.hpp"
@@ -262,10 +263,21 @@ bool Session::is_same_picture(const Assembly& scene, const Camera& camera, const
            settings.light_tracing == settings_.light_tracing && has_sums_for(settings.layers);
 }
 
+Assembly Session::with_shapes_in_exposure(const Assembly& scene, const Camera& camera, const EffectChoice& effects) {
+    const double readout_s = effects.rolling_shutter ? camera.shutter.readout_time_s : 0;
+    const double middle_s = camera.shutter.opens_s + 0.5 * (camera.exposure_time_s + readout_s);
+    if (middle_s != std::exchange(shapes_time_s_, middle_s)) shapes_.clear();
+    return with_shapes_at(scene, middle_s, shapes_);
+}
+
 void Session::prepare_changes(const Assembly& requested_scene, const Camera& requested_camera,
                               const RenderSettings& settings, PupilStart start, const KeepGoing& keep_going) {
-    const auto changed = without_disabled_motion(requested_scene, requested_camera, settings.effects);
-    const Assembly& scene = changed ? changed->scene : requested_scene;
+    std::optional<Assembly> shaped;
+    if (requested_scene.deforms())
+        shaped = with_shapes_in_exposure(requested_scene, requested_camera, settings.effects);
+    const Assembly& shaped_scene = shaped ? *shaped : requested_scene;
+    const auto changed = without_disabled_motion(shaped_scene, requested_camera, settings.effects);
+    const Assembly& scene = changed ? changed->scene : shaped_scene;
     const Camera& camera = changed ? changed->camera : requested_camera;
     const bool is_same = is_ready_ && is_same_picture(scene, camera, settings);
     // Frames of a camera at rest add up to a picture, which must have the pupil that a search from scratch finds.

@@ -265,6 +265,9 @@ private:
     /// Returns true if samples of these arguments can be added to the current film.
     bool is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const;
 
+    /// Returns the scene with the shapes that its deforming objects have in the middle of the exposure of the film.
+    Assembly with_shapes_in_exposure(const Assembly& scene, const Camera& camera, const EffectChoice& effects);
+
     /// Prepares the device for a scene, camera and settings, and begins a new picture if they require it.
     void prepare_changes(const Assembly& requested_scene, const Camera& requested_camera,
                          const RenderSettings& settings, PupilStart start, const KeepGoing& keep_going);
@@ -331,6 +334,8 @@ private:
     Assembly scene_;
     Camera camera_;
     RenderSettings settings_;
+    Shapes shapes_;  ///< of the deforming objects of the last scene, at shapes_time_s_
+    double shapes_time_s_ = 0;
     std::int64_t samples_ = 0;  ///< samples of the pixel that has most: position in the random sequence
     std::int64_t mean_samples_ = 0;  ///< samples per pixel, as a mean over all pixels, rounded up
     bool is_blank_ = true;  ///< true until the first sample of a picture begins; the film must then be cleared

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import base64
+import json
+import tempfile
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -33,6 +37,57 @@ def scene() -> rc.Scene:
         .with_sun((0, -1, 0), (1, 2, 3))
         .with_environment(np.arange(24.0).reshape(2, 4, 3))
     )
+
+
+def deforming_scene() -> rc.Scene:
+    """A triangle with a morph target and a skin, which an animation moves."""
+    data = b""
+    views: list[dict[str, int]] = []
+    accessors: list[dict[str, object]] = []
+
+    def array(kind: str, numbers: object, component_type: int = 5126) -> int:
+        nonlocal data
+        raw = np.asarray(numbers, {5126: np.float32, 5123: np.uint16}[component_type])
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": raw.nbytes})
+        count = raw.size // {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[kind]
+        accessors.append({"bufferView": len(views) - 1, "componentType": component_type, "count": count, "type": kind})
+        data += raw.tobytes()
+        return len(accessors) - 1
+
+    corners = np.array([(-1, 0, 1), (1, 0, 1), (0, 0, -1)])
+    joints = {"JOINTS_0": array("VEC4", np.zeros((3, 4)), 5123), "WEIGHTS_0": array("VEC4", [(1, 0, 0, 0)] * 3)}
+    primitive = {
+        "attributes": {"POSITION": array("VEC3", corners), **joints},
+        "targets": [{"POSITION": array("VEC3", 0.1 * corners)}],
+    }
+    times = array("SCALAR", [0, 1])
+    samplers = [
+        {"input": times, "output": array("SCALAR", [0, 1])},
+        {"input": times, "output": array("VEC3", [(0, 0, 0), (0, 0.5, 0)])},
+    ]
+    file = {
+        "asset": {"version": "2.0"},
+        "nodes": [{"mesh": 0, "skin": 0}, {}],
+        "meshes": [{"primitives": [primitive]}],
+        "skins": [{"joints": [1]}],
+        "animations": [
+            {
+                "samplers": samplers,
+                "channels": [
+                    {"sampler": 0, "target": {"node": 0, "path": "weights"}},
+                    {"sampler": 1, "target": {"node": 1, "path": "translation"}},
+                ],
+            }
+        ],
+        "accessors": accessors,
+        "bufferViews": views,
+        "buffers": [{"byteLength": len(data), "uri": "data:;base64," + base64.b64encode(data).decode()}],
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "deforming.gltf")
+        path.write_text(json.dumps(file))
+        scene = rc.Scene.load(path)
+    return floor_scene().with_instance(scene)
 
 
 def session() -> rc.Session:
@@ -112,7 +167,7 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
     ],
     "Camera": [camera, lambda: rc.Camera(lens())],
     "Material": [lambda: rc.Material(), lambda: rc.Material(emission=(1, 0, 0))],
-    "Scene": [scene, floor_scene, lambda: scene().moved("chair 1", np.eye(4))],
+    "Scene": [scene, floor_scene, deforming_scene, lambda: scene().moved("chair 1", np.eye(4))],
     "Meridian": [lambda: lens().meridians()[0], lambda: lens().stopped_down(8).meridians()[0]],
     "FilmPupil": [lambda: lens().film_pupil(), lambda: lens().film_pupil((0, 9))],
     "Spot": [lambda: lens().spot(10), lambda: lens().spot(10, samples=3), lambda: lens().spot(11)],

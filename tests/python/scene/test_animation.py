@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import base64
 import json
+import pickle
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import realcam as rc
+
+from .. import scenes
 
 
 class Gltf:
@@ -23,6 +26,7 @@ class Gltf:
         self.samplers: list[dict[str, Any]] = []
         self.channels: list[dict[str, Any]] = []
         self.triangle = self.array(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]), "VEC3")
+        self.primitive: dict[str, Any] = {"attributes": {"POSITION": self.triangle}}
 
     def array(self, numbers: object, kind: str) -> int:
         raw = np.asarray(numbers, np.float32)
@@ -37,7 +41,7 @@ class Gltf:
         return len(self.nodes) - 1
 
     def animate(self, node: int, path: str, times: object, values: object, interpolation: str = "LINEAR") -> None:
-        kind = "VEC4" if path == "rotation" else "VEC3"
+        kind = {"rotation": "VEC4", "weights": "SCALAR"}.get(path, "VEC3")
         sampler = {"input": self.array(times, "SCALAR"), "output": self.array(values, kind)}
         self.samplers.append({**sampler, "interpolation": interpolation})
         self.channels.append({"sampler": len(self.samplers) - 1, "target": {"node": node, "path": path}})
@@ -49,7 +53,7 @@ class Gltf:
             "buffers": [{"byteLength": len(self.data), "uri": uri}],
             "bufferViews": self.views,
             "accessors": self.accessors,
-            "meshes": [{"primitives": [{"attributes": {"POSITION": self.triangle}}]}],
+            "meshes": [{"primitives": [self.primitive]}],
             "nodes": self.nodes,
             "animations": [{"name": "walk", "samplers": self.samplers, "channels": self.channels}],
         }
@@ -149,11 +153,52 @@ def test_what_is_not_played_is_said(tmp_path: Path) -> None:
     gltf.channels.append({"sampler": 0, "target": {"node": 0, "path": "weights"}})
     scene = gltf.load(tmp_path)
     warnings = "\n".join(scene.warnings)
-    assert 'animation 0 "walk": 1 channels animate the weights' in warnings
+    assert 'animation 0 "walk": 1 channels animate the weights of a mesh without morph targets' in warnings
     assert "1 channels animate nodes that have a matrix" in warnings
     # Scaled to nothing at its end: it stands as it does at time 0.
     assert scene.motions == (None,)
     np.testing.assert_array_equal(at(scene, "box", 1), np.eye(4))
+
+
+def rising_wall(tmp_path: Path) -> rc.Scene:
+    """A triangle of 40 m in the plane z = -10 that moves to z = -5 from 0 to 4 s, by a morph target."""
+    gltf = Gltf()
+    corners = np.array([[-20, -20, -10], [20, -20, -10], [0, 20, -10]])
+    gltf.primitive = {
+        "attributes": {"POSITION": gltf.array(corners, "VEC3")},
+        "targets": [{"POSITION": gltf.array(np.array([[0, 0, 5]] * 3), "VEC3")}],
+    }
+    gltf.animate(gltf.node("wall"), "weights", [0, 4], [0, 1])
+    return gltf.load(tmp_path).with_environment(1)
+
+
+def test_a_picture_shows_a_mesh_that_deforms_in_the_middle_of_its_exposure(tmp_path: Path, device: str) -> None:
+    scene = rising_wall(tmp_path)
+    for effects in (("motion_blur", "rolling_shutter"), ()):
+        camera = scenes.pinhole()
+        session = rc.Session(scene, camera, device=device, effects=effects)
+        for opens_s, exposure_s, readout_s in ((0, 1, 0), (0, 3, 0), (1, 1, 0.5), (6, 1, 0)):
+            view = camera.replace(shutter_opens_s=opens_s, exposure_time_s=exposure_s, readout_time_s=readout_s)
+            middle_s = opens_s + (exposure_s + (readout_s if effects else 0)) / 2
+            session.set(camera=view)
+            session.add(1)
+            # Depth is measured from the film's centre along the axis, as a float.
+            depth = session.image().depth[8, 12]
+            assert depth == pytest.approx(camera.position[2] + 10 - 1.25 * min(middle_s, 4), rel=1e-5)
+            # Samples of the same shape add up.
+            session.set(camera=view)
+            session.add(1)
+            assert session.image().spp == 2
+
+
+def test_a_scene_that_deforms_has_its_shape_at_any_time_and_after_a_pickle(tmp_path: Path) -> None:
+    scene = rising_wall(tmp_path)
+    for copied in (scene, pickle.loads(pickle.dumps(scene))):
+        assert copied == scene
+        for time in (0, 1, 4, 9):
+            assert copied.at_time(time).bounds_m[0][2] == pytest.approx(-10 + 1.25 * min(time, 4))
+    assert "1 meshes change their shape over time" in "\n".join(scene.warnings)
+    assert scene.bounds_m[0][2] == -10  # at time 0
 
 
 @pytest.mark.parametrize(
