@@ -172,8 +172,10 @@ __attribute__((flatten)) REALCAM_CLONES void TangentPath::record(Rays& rays, std
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
         std::vector<Dual8> forms(surfaces_[k].view.kind == SurfaceShape::freeform ? kLanes * duals_[k].size() : 0);
         trace_tangents(surfaces_[k], rays, unused, forms.data());
-        crossings[k] = {rays.origin, rays.direction, rays.origin_tangent, rays.direction_tangent};
+        crossings[k].origin = rays.origin, crossings[k].direction = rays.direction;
+        crossings[k].origin_tangent = rays.origin_tangent;
     }
+    change_frame(exit_, static_cast<LensRays<double, kLanes>&>(rays));
 }
 
 template <class Lane>

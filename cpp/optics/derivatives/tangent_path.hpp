@@ -53,11 +53,12 @@ public:
     /// tangents are those in front of the lens, in the camera's frame.
     void trace(Rays& rays, Sums& sums, const int* starts = nullptr, const Vec3d* rim_tangents = nullptr) const;
 
-    /// Positions and directions of rays behind each surface with their tangents, for rims.
+    /// Rays behind a surface, in its frame, and tangents of their points on it.
     struct Crossing {
-        Vec3Lanes<double, kLanes> origin, direction, origin_tangent, direction_tangent;
+        Vec3Lanes<double, kLanes> origin, direction, origin_tangent;
     };
-    /// trace without sums; records the rays behind each surface, in its frame.
+    /// Traces rays and their tangents from the film like `trace`, but without sums, and records their crossings of each
+    /// surface. On return, the rays are in the camera's frame, but the tangents are not.
     void record(Rays& rays, std::vector<Crossing>& crossings) const;
 
     /// Returns the derivatives that follow from the sums of one lane, or of all lanes.

@@ -91,6 +91,26 @@ inline void for_surface_points(const TangentSurface& surface, const Vec3Lanes<do
     }
 }
 
+/// Replaces rays that have missed a surface, or were totally reflected, by one that passes, without a tangent. `o`,
+/// `p`: rays in front of the surface. Returns false if no ray passes.
+template <int N>
+inline bool replace_ended(TangentRays<N>& rays, Vec3Lanes<double, N>& o, Vec3Lanes<double, N>& p) {
+    int passing = 0;
+    while (passing < N && rays.status[passing] != 0) ++passing;
+    if (passing == N) return false;
+    for (int i = 0; i < N; ++i) {
+        if (rays.status[i] == 0) continue;
+        rays.origin.set(i, rays.origin[passing]);
+        rays.direction.set(i, rays.direction[passing]);
+        rays.origin_tangent.set(i, {0, 0, 0});
+        rays.direction_tangent.set(i, {0, 0, 0});
+        rays.status[i] = 0;
+        o.set(i, o[passing]);
+        p.set(i, p[passing]);
+    }
+    return true;
+}
+
 /// Traces N rays and their tangents through one surface, which blocks none of them, and adds the contributions of its
 /// numbers to `step`. `form_sums`: for freeforms, the contributions of their own variables: for each lane, as many
 /// dual numbers as there are dual surfaces.
@@ -117,6 +137,9 @@ inline void trace_tangents(const TangentSurface& surface, TangentRays<N>& rays, 
     // The frame has already been changed.
     const LensView<double> one{&surface.traced, 1, LensKind::any, {}, {nullptr, surface.freeform, nullptr}};
     trace_lens<LensKind::any>(one, static_cast<LensRays<double, N>&>(rays));
+    int ended = 0;
+    for (int i = 0; i < N; ++i) ended |= rays.status[i];
+    if (ended != 0 && !replace_ended(rays, o, p)) return;
     for_surface_points(surface, rays.origin, form_sums,
                        [&](const auto& point, int i) { push_tangent(point, o[i], p[i], rays, step, i); });
 }

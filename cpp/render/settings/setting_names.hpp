@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "../../camera/film/develop.hpp"
+#include "../../camera/film/pixel_filter.hpp"
 #include "../../camera/models/camera_view.hpp"
 #include "../../camera/models/pupil_sampling.hpp"
 #include "../path/path_settings.hpp"
@@ -68,6 +69,9 @@ inline constexpr NamedValues<PupilSampling, 4> kPupilSamplings = {{
 }};
 inline constexpr NamedValues<LightTracing, 3> kLightTracings = {
     {{"weighted", LightTracing::weighted}, {"off", LightTracing::off}, {"alone", LightTracing::alone}}};
+
+inline constexpr NamedValues<PixelFilter, 3> kPixelFilters = {
+    {{"box", PixelFilter::box}, {"tent", PixelFilter::tent}, {"gaussian", PixelFilter::gaussian}}};
 
 inline const char* name_of(CameraModel model) {
     return name_among(kCameraModels, model);
