@@ -258,7 +258,8 @@ private:
                 const auto weight = static_cast<float>(edge.weight);
                 lights[i] = {edge.pixel, weight * results.irradiance[lane], weight};
             }
-            f(of_.outline_.start(lines, t), points, lights, used);
+            TangentPath::Rays starts = of_.outline_.start(lines, t);
+            f(starts, points, lights, used);
         }
     }
 
@@ -433,7 +434,7 @@ std::vector<double> PictureGradient::reverse(const float* adjoint, const float* 
             double by_stop = 0;
             const double outline_scale = exposure_per_sample(samples.outline_spp);
             if (samples.boundary)
-                row.for_outline_samples([&](TangentPath::Rays rays, const OutlinePoint* const* points,
+                row.for_outline_samples([&](TangentPath::Rays& rays, const OutlinePoint* const* points,
                                             const SampleLight* lights, int used) {
                     int surfaces[kRays];
                     Vec3d tangents[kRays];
@@ -518,7 +519,7 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
             if (block.count > 0) trace_block();
             const double outline_scale = exposure_per_sample(samples.outline_spp);
             if (samples.boundary)
-                row.for_outline_samples([&](TangentPath::Rays rays, const OutlinePoint* const* points,
+                row.for_outline_samples([&](TangentPath::Rays& rays, const OutlinePoint* const* points,
                                             const SampleLight* lights, int used) {
                     int surfaces[kRays];
                     Vec3d tangents[kRays];

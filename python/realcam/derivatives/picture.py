@@ -215,6 +215,4 @@ def _stop_rate(lens: Lens) -> float:
     """Derivative of the diaphragm's radius by the f-number, mm."""
     if lens.stop_semi_diameter_mm >= lens.surfaces[lens.stop_index].clear_semi_diameter_mm:
         raise InputError("the derivative by f_number does not exist wide open; stop the lens down first")
-    # The radius and the sine of the marginal ray's angle are smooth functions of each other.
-    number = lens.f_number_at_infinity if hasattr(lens, "f_number_at_infinity") else lens.f_number
-    return float(_rate(lambda n: np.array(lens.stopped_down(n).stop_semi_diameter_mm), number))
+    return float(_rate(lambda n: np.array(lens.stopped_down(n).stop_semi_diameter_mm), lens.f_number))
