@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -12,6 +13,7 @@
 #include "../render/gradients/film_radiance.hpp"
 #include "../render/gradients/filtered_film.hpp"
 #include "../scene/scene_checks.hpp"
+#include "embree_scene.hpp"
 #include "lens_rays.hpp"
 #include "packet_scene.hpp"
 
@@ -53,6 +55,20 @@ struct SampleLight {
 
 }  // namespace
 
+/// The scene, and the device of Embree that holds it.
+struct PictureGradient::EmbreeParts {
+    struct ReleaseDevice {
+        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+    };
+
+    std::unique_ptr<RTCDeviceTy, ReleaseDevice> device{new_embree_device()};
+    std::atomic<bool> stop{false};  ///< never set: the construction is not interrupted
+    EmbreeScene scene;
+
+    EmbreeParts(const Assembly& of, const Camera& camera)
+        : scene(device.get(), of, position_when_open(camera), camera.exposure(), stop) {}
+};
+
 Camera PictureGradient::extended(Camera camera, int margin) {
     Film& film = camera.film;
     film.width_mm *= static_cast<double>(film.width + 2 * margin) / film.width;
@@ -72,13 +88,12 @@ PictureGradient::PictureGradient(const Assembly& scene, const Camera& camera, co
       outline_(camera.lens, camera.lens.wavelength_nm),
       setup_(std::make_shared<const CameraSetup>(extended(camera, margin_), fast_pupil_tracer(), nullptr,
                                                  settings.lens_effects())),
-      film_index_(camera.lens.indices(camera.lens.wavelength_nm).back()),
-      device_(new_embree_device()) {
+      film_index_(camera.lens.indices(camera.lens.wavelength_nm).back()) {
     SceneChecks().check(scene);
     if (scene.moves() && camera.shutter.readout_time_s > 0)
         throw InputError("derivatives of pictures do not support rolling shutters in scenes that move");
-    scene_ = std::make_unique<EmbreeScene>(device_.get(), scene, position_when_open(camera), camera.exposure(), stop_);
-    view_ = setup_->view(scene_->placed().origin_m(), scene_->placed().moves());
+    embree_ = std::make_unique<const EmbreeParts>(scene, camera);
+    view_ = setup_->view(embree_->scene.placed().origin_m(), embree_->scene.placed().moves());
 }
 
 PictureGradient::~PictureGradient() = default;
@@ -90,8 +105,9 @@ public:
         : of_(of),
           samples_(samples),
           row_(row),
-          scene_view_(of.scene_->placed().view()),
-          scene_{of.scene_->handle(), static_cast<std::uint32_t>(scene_view_.instance_count), RayOrder::coherent, 0} {}
+          scene_view_(of.embree_->scene.placed().view()),
+          scene_{of.embree_->scene.handle(), static_cast<std::uint32_t>(scene_view_.instance_count), RayOrder::coherent,
+                 0} {}
 
     /// Calls f(lane, light of its sample, samples) for blocks of samples on the film, for the lanes whose rays pass.
     template <class F>

@@ -1,5 +1,4 @@
 #pragma once
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -11,7 +10,6 @@
 #include "../optics/derivatives/outline_rays.hpp"
 #include "../render/settings/render_settings.hpp"
 #include "../scene/assembly.hpp"
-#include "embree_scene.hpp"
 
 namespace realcam {
 
@@ -70,6 +68,7 @@ private:
     static constexpr std::size_t kOtherNumbers = 13;
     class Row;
     class FilmRows;
+    struct EmbreeParts;
 
     /// Camera whose film extends past the picture's border by the pixels of the margin, from which light counts for
     /// pixels at the border.
@@ -93,12 +92,7 @@ private:
     OutlineRays outline_;
     std::shared_ptr<const CameraSetup> setup_;
     double film_index_;  ///< refractive index in front of the film
-    struct ReleaseDevice {
-        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-    };
-    std::unique_ptr<RTCDeviceTy, ReleaseDevice> device_;
-    std::atomic<bool> stop_{false};
-    std::unique_ptr<EmbreeScene> scene_;
+    std::unique_ptr<const EmbreeParts> embree_;
     CameraView view_{};
     std::int64_t unexplained_ = 0, edges_ = 0;
 };

@@ -97,8 +97,8 @@ if TYPE_CHECKING:
         Variable,
         backpropagate_rays,
         ray_derivatives,
-        render_gradient,
     )
+    from .derivatives.picture import render_filtered, render_gradient
     from .job import Job, JobStatus
     from .optimisation import (
         GlassMatch,
@@ -132,7 +132,8 @@ _TOOLS = {
     "analysis": "analysis",
     "analysis.image_simulation": "ImageSimulation image_simulation",  # loads scipy
     "calibration": "Calibration CalibrationFileError GeometryError PointStatus Vignetting",
-    "derivatives": "Gradient RayDerivatives RayGradient Variable backpropagate_rays ray_derivatives render_gradient",
+    "derivatives": "Gradient RayDerivatives RayGradient Variable backpropagate_rays ray_derivatives",
+    "derivatives.picture": "render_filtered render_gradient",
     "job": "Job JobStatus",
     "optimisation": "GlassMatch GlassSearch Operand Optimisation Targets nearest_glasses optimised with_better_glasses",
     "photography": "DepthOfField PhotographicFigures depth_of_field photographic_figures",
@@ -296,6 +297,7 @@ __all__ = [
     "ray_derivatives",
     "read_environment",
     "render",
+    "render_filtered",
     "render_gradient",
     "save_camera_json",
     "save_colmap",

@@ -53,12 +53,12 @@ void bind_picture_gradient(py::module_& m) {
     };
     const auto picture = [](PictureGradient& self, std::int64_t seed, int spp, bool uniform) {
         const GradientSamples samples = samples_of(seed, spp, 1, "both", uniform);
-        std::vector<float> picture;
+        std::vector<float> exposure;
         {
             const Unlocked unlocked;
-            picture = self.picture(samples, heed_signals);
+            exposure = self.picture(samples, heed_signals);
         }
-        return array_from(std::move(picture), {self.height(), self.width(), 3});
+        return array_from(std::move(exposure), {self.height(), self.width(), 3});
     };
     const auto reverse = [](PictureGradient& self, const InputArray<float>& adjoint,
                             const std::optional<InputArray<float>>& control, std::int64_t seed, int spp,

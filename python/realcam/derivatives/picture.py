@@ -95,7 +95,7 @@ def render_gradient(
       Derivatives do not take a noise goal, nor effects; they trace no lights, so that images of point lights and
       suns themselves are missing.
 
-    The derivative is taken at fixed rays of the scene (docs/picture_derivatives.md). Raises InputError for what is not
+    The derivative is taken at fixed rays of the scene (docs/picture-derivatives.md). Raises InputError for what is not
     supported, by name.
     """
     if isinstance(parameters, (str, Variable)):
@@ -124,6 +124,25 @@ def render_gradient(
         moving = numbers.moves_lens
         pictures[moving] += control * of_picture.forward(numbers.directions[moving], None, **even)
     return pictures
+
+
+def render_filtered(
+    scene: Scene,
+    camera: Camera,
+    *,
+    filter: str = "tent",
+    settings: RenderSettings | None = None,
+    **changes: Unpack[_SettingsKwargs],
+) -> Floats:
+    """The picture that render_gradient differentiates: exposure in lux seconds, (H, W, 3), on the CPU.
+
+    filter: "tent" or "gaussian". The samples are those of rc.render with the same seed. Each counts for all pixels
+    whose filters it reaches; samples beyond the film's border count for the pixels at the border.
+    Raises InputError as render_gradient.
+    """
+    final = _final_settings(settings, changes)
+    of_picture = _core._PictureGradient(scene, camera, final, filter, [])
+    return of_picture.picture(seed=final.seed, spp=_spp_of(final))
 
 
 def _final_settings(settings: RenderSettings | None, changes: _SettingsKwargs) -> RenderSettings:
