@@ -53,6 +53,7 @@ void bind_scene_materials(py::class_<Assembly>& scene);
 void bind_instances(py::class_<Assembly>& scene);
 void bind_settings(py::module_& m);
 void bind_render(py::module_& m);
+void bind_picture_gradient(py::module_& m);
 void bind_plan(py::module_& m);
 void bind_view(py::module_& m);
 void bind_shot(py::module_& m);

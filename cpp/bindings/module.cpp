@@ -56,6 +56,7 @@ PYBIND11_MODULE(_core, m) {
     bind_scene(m);
     bind_settings(m);
     bind_render(m);
+    bind_picture_gradient(m);
     bind_plan(m);
     bind_view(m);
     bind_shot(m);

@@ -7,6 +7,15 @@
 
 namespace realcam {
 
+RTCDevice new_embree_device() {
+    const RTCDevice device = rtcNewDevice(nullptr);
+    if (device) return device;
+    const RTCError code = rtcGetDeviceError(nullptr);
+    throw DeviceError("Embree could not be started: " + (code == RTC_ERROR_OUT_OF_MEMORY
+                                                              ? std::string("out of memory")
+                                                              : "error " + std::to_string(code)));
+}
+
 void EmbreeScene::check() const {
     const RTCError code = rtcGetDeviceError(device_);
     if (stop_ || code == RTC_ERROR_CANCELLED) throw Cancelled();

@@ -10,6 +10,9 @@
 
 namespace realcam {
 
+/// Returns a new device of Embree, to be released by rtcReleaseDevice. Throws DeviceError if there is none.
+RTCDevice new_embree_device();
+
 /// Scene in render space with its Embree BVHs: one for the static geometry and, if there are instances, one for each
 /// object and one over all instances.
 class EmbreeScene {

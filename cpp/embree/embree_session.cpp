@@ -29,20 +29,11 @@ namespace {
 constexpr int kTileSide = SampleSharing::kTileSide;
 constexpr std::size_t kDevelopGrain = 4096;  // pixels that are developed by one task
 
-/// Returns the error for a device that Embree could not create.
-DeviceError rtc_error(RTCError code) {
-    const std::string text = "Embree could not be started: ";
-    return DeviceError(text + (code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error " + std::to_string(code)));
-}
-
 /// Session on the CPU. Renders tiles of pixels in parallel with the kernels of the machine's instruction set
 /// (kernels.hpp).
 class EmbreeSession final : public Session {
 public:
-    EmbreeSession() : device_(rtcNewDevice(nullptr)) {
-        if (!device_) throw rtc_error(rtcGetDeviceError(nullptr));
-        kernels();
-    }
+    EmbreeSession() : device_(new_embree_device()) { kernels(); }
     ~EmbreeSession() override {
         cancel();
         scene_.reset();

@@ -91,7 +91,15 @@ if TYPE_CHECKING:
     from .accuracy import AccuracyCost, accuracy_cost
     from .analysis.image_simulation import ImageSimulation, image_simulation
     from .calibration import Calibration, CalibrationFileError, GeometryError, PointStatus, Vignetting
-    from .derivatives import Gradient, RayDerivatives, RayGradient, Variable, backpropagate_rays, ray_derivatives
+    from .derivatives import (
+        Gradient,
+        RayDerivatives,
+        RayGradient,
+        Variable,
+        backpropagate_rays,
+        ray_derivatives,
+    )
+    from .derivatives.picture import render_filtered, render_gradient
     from .job import Job, JobStatus
     from .optimisation import (
         GlassMatch,
@@ -127,6 +135,7 @@ _TOOLS = {
     "analysis.image_simulation": "ImageSimulation image_simulation",  # loads scipy
     "calibration": "Calibration CalibrationFileError GeometryError PointStatus Vignetting",
     "derivatives": "Gradient RayDerivatives RayGradient Variable backpropagate_rays ray_derivatives",
+    "derivatives.picture": "render_filtered render_gradient",
     "job": "Job JobStatus",
     "optimisation": "GlassMatch GlassSearch Operand Optimisation Targets nearest_glasses optimised with_better_glasses",
     "photography": "DepthOfField PhotographicFigures depth_of_field photographic_figures",
@@ -294,6 +303,8 @@ __all__ = [
     "ray_derivatives",
     "read_environment",
     "render",
+    "render_filtered",
+    "render_gradient",
     "save_camera_json",
     "save_colmap",
     "sensor_names",

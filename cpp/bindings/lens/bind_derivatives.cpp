@@ -7,7 +7,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "../../embree/lens_rays.hpp"
@@ -16,15 +15,13 @@
 #include "../../optics/trace/trace_request.hpp"
 #include "../bindings.hpp"
 #include "../values/arrays.hpp"
+#include "lens_variables.hpp"
 
 namespace realcam::bindings {
 
 using namespace py::literals;
 
 namespace {
-
-/// Variables of a lens as tuples (quantity, surface, number, number_y); see LensVariable.
-using Variables = std::vector<std::tuple<std::string, int, int, int>>;
 
 const std::map<std::string, LensQuantity>& quantities() {
     static const std::map<std::string, LensQuantity> names = {
@@ -44,7 +41,8 @@ const std::map<std::string, LensQuantity>& quantities() {
     return names;
 }
 
-/// Converts variables. Throws InputError for an unknown quantity.
+}  // namespace
+
 std::vector<LensVariable> variables_from(const Variables& variables) {
     std::vector<LensVariable> list;
     for (const auto& [name, surface, number, number_y] : variables) {
@@ -66,6 +64,8 @@ std::vector<LensVariable> variables_from(const Variables& variables) {
     }
     return list;
 }
+
+namespace {
 
 constexpr int kPathRow = 6;  ///< row of the optical path in RayDerivatives
 

@@ -16,6 +16,7 @@
 #include "../../optics/prescription/coating_checks.hpp"
 #include "../../optics/prescription/form_checks.hpp"
 #include "../../optics/prescription/lens_checks.hpp"
+#include "../../optics/trace/lens_rays.hpp"
 #include "../../scene/scene_checks.hpp"
 #include "material.hpp"
 #include "value_compare.hpp"

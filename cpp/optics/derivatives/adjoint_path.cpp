@@ -10,34 +10,6 @@ namespace realcam {
 
 namespace {
 
-/// Returns the contribution of a frame to the derivative by the variable in a lane. `adjoints`: adjoints of the frame's
-/// origin and axes.
-template <class Frame>
-double sum_of_frame(const Vec3d* adjoints, const Frame& frame, std::size_t lane) {
-    double sum = 0;
-    for (const Vec3<Dual8>* part : {&frame.origin, &frame.x, &frame.y, &frame.z})
-        sum += dot(*adjoints++, {part->x.by[lane], part->y.by[lane], part->z.by[lane]});
-    return sum;
-}
-
-/// Returns the contribution of a surface to the derivative by the variable in a lane. `adjoints`: adjoints of the
-/// surface's numbers (SurfaceNumber).
-double sum_of_surface(const double* adjoints, const DualSurface& surface, std::size_t lane) {
-    const SurfaceView<Dual8>& view = surface.view;
-    double sum = adjoints[kFrameOrigin + 2] * view.shift.by[lane] + adjoints[kCurvature] * view.curvature.by[lane] +
-                 adjoints[kConicFactor] * view.conic_factor.by[lane] +
-                 adjoints[kSquaredIndexChange] * view.squared_index_change.by[lane] +
-                 adjoints[kIndexSquared] * view.index_squared.by[lane];
-    if (surface.before.changes) {
-        Vec3d of_frame[4];
-        for (int part = 0; part < 4; ++part)
-            of_frame[part] = {adjoints[3 * part], adjoints[3 * part + 1], adjoints[3 * part + 2]};
-        sum += sum_of_frame(of_frame, surface.before, lane);
-    }
-    if (surface.powers[lane] != 0) sum += adjoints[kAspheric + surface.powers[lane] / 2 - 2];
-    return sum;
-}
-
 /// Returns the frame change without derivatives.
 FrameChange<double> value(const DualFrame& frame) {
     return {value(frame.origin), value(frame.x), value(frame.y), value(frame.z), frame.changes};

@@ -187,7 +187,7 @@ Affine<Dual8> DualLens::frame(const LensSystem& lens, int surface) const {
 }
 
 Affine<Dual8> DualLens::last_axis(const LensSystem& lens) const {
-    return moves_alone(lens.surfaces.back()) ? inverse(placements.back()) : Affine<Dual8>{};
+    return moves_alone(lens.surfaces.back()) ? placements.back() : Affine<Dual8>{};
 }
 
 Affine<Dual8> DualLens::film(const LensSystem& lens) const {

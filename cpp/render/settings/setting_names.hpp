@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "../../camera/film/develop.hpp"
+#include "../../camera/film/pixel_filter.hpp"
 #include "../../camera/models/camera_view.hpp"
 #include "../../camera/models/pupil_sampling.hpp"
 #include "../path/path_settings.hpp"
@@ -76,6 +77,9 @@ enum class ExrColorSpace {
 };
 inline constexpr NamedValues<ExrColorSpace, 2> kExrColorSpaces = {
     {{"rec709", ExrColorSpace::rec709}, {"acescg", ExrColorSpace::acescg}}};
+
+inline constexpr NamedValues<PixelFilter, 3> kPixelFilters = {
+    {{"box", PixelFilter::box}, {"tent", PixelFilter::tent}, {"gaussian", PixelFilter::gaussian}}};
 
 inline const char* name_of(CameraModel model) {
     return name_among(kCameraModels, model);

@@ -1,0 +1,81 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "tangent_trace.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Derivatives by the numbers of a camera.
+struct CameraDerivatives {
+    std::vector<double> by_variable;  ///< lens variables
+    /// Translation of the film, mm, and its rotation about its centre, rad, relative to the camera, along the film's
+    /// axes (film_frame).
+    std::array<double, 6> by_film{};
+    /// Translation of the camera, mm, and its rotation about the film's centre, rad, along the camera's axes.
+    std::array<double, 6> by_pose{};
+};
+
+/// Derivatives, at fixed scene rays, of functions of the rays on the film by the numbers of a camera: tangents of rays
+/// that are traced from the film (tangent_trace.hpp). The camera's frame has the axes of the lens frame, and its origin
+/// is the film's centre, as for Pose. A variable of the lens that changes the distance between film and lens therefore
+/// moves the lens.
+class TangentPath {
+public:
+    static constexpr int kLanes = 16;  ///< rays that are traced together
+    using Rays = TangentRays<kLanes>;
+
+    /// Prepares a lens. Throws InputError if a variable is invalid (check_variables) or the film is curved.
+    TangentPath(const LensSystem& lens, double wavelength_nm, std::vector<LensVariable> variables);
+
+    /// Index of the last surface, whose rim rays from the film meet first, is 0; that of the film is kFilm.
+    static constexpr int kFilm = -1;
+    int surface_count() const { return static_cast<int>(surfaces_.size()); }
+    std::size_t variable_count() const { return variables_.size(); }
+
+    /// Contributions to -dH of each lane, from all numbers of the camera; cleared by the constructor.
+    struct Sums {
+        explicit Sums(const TangentPath& path);
+        void clear();
+
+        AdjointStep<kLanes> film;  ///< start on the film; its origin and direction are unused
+        /// Of each surface. After a trace, `origin` and `direction` are those of the ray behind the surface.
+        std::vector<AdjointStep<kLanes>> surfaces;
+        std::vector<std::vector<Dual8>> forms;
+        Lanes<double, kLanes> pose[6];
+    };
+
+    /// Traces rays and their tangents from the film to the scene; no rim blocks them. Rays start in the frame of the
+    /// film's rays (film_path_ends): x and y on the film and the film distance. A ray's tangent starts at the film,
+    /// with the change of the ray's optical direction, or at the rim of surface `starts[lane]`: it then has the
+    /// direction `rim_tangents[lane]` behind that surface, in whose plane the ray's point is fixed. On return, rays and
+    /// tangents are those in front of the lens, in the camera's frame.
+    void trace(Rays& rays, Sums& sums, const int* starts = nullptr, const Vec3d* rim_tangents = nullptr) const;
+
+    /// Rays behind a surface, in its frame, and tangents of their points on it.
+    struct Crossing {
+        Vec3Lanes<double, kLanes> origin, direction, origin_tangent;
+    };
+    /// Traces rays and their tangents from the film like `trace`, but without sums, and records their crossings of each
+    /// surface. On return, the rays are in the camera's frame, but the tangents are not.
+    void record(Rays& rays, std::vector<Crossing>& crossings) const;
+
+    /// Returns the derivatives that follow from the sums of one lane, or of all lanes.
+    CameraDerivatives derivatives(const Sums& sums, int lane) const;
+    CameraDerivatives derivatives(const Sums& sums) const;
+
+private:
+    template <class Lane>
+    CameraDerivatives derivatives_of(const Sums& sums, const Lane& lane_sum) const;
+
+    std::vector<LensVariable> variables_;
+    std::vector<TangentSurface> surfaces_;  ///< from the film to the scene
+    std::vector<FreeformView<double>> freeforms_;
+    /// Of each surface: one without derivatives, whose lanes FreeformPoint uses, then one for every eight variables.
+    std::vector<std::vector<DualSurface>> duals_;
+    std::vector<DualFrame> film_frames_;  ///< motion of the film, one for every eight variables
+    FrameChange<double> exit_;  ///< from the last surface's frame to the camera's
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,147 @@
+#pragma once
+#include "adjoint_trace.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Derivatives at fixed scene rays. The map from the rays of the scene to those that reach the film is symplectic, so
+// that each number of a camera has a Hamiltonian H(x, q): the change of the optical path between fixed ends, per change
+// of the number, as a function of the film point x and the optical direction cosines q of the ray that arrives there.
+// If the number changes, a fixed scene ray moves on the film by dx = -dH/dq and dq = dH/dx (Hamilton 1828; Stone and
+// Forbes, "Differential ray tracing in inhomogeneous media", JOSA A 14, 2824, 1997, for the adjoint form). A rigid
+// displacement v of a surface has H = -(p' - p) . v, a change of its sag s has H = -(p' - p)_z s, and a change of the
+// refractive index of a medium has the length of the ray in the medium, where p and p' are the optical directions in
+// front of and behind the surface.
+//
+// So one ray that is traced from the film, with its derivative (tangent) along a direction w of q, yields -w . dH/dq =
+// w . dx by all numbers of the camera. Nothing of the ray must be stored.
+
+/// N rays with their derivatives along one direction in the space of rays, in the frame of the current surface.
+template <int N>
+struct TangentRays : LensRays<double, N> {
+    Vec3Lanes<double, N> origin_tangent, direction_tangent;
+};
+
+/// Adds the contributions to -dH of the frame of the plane on which a ray starts. Adjoints are those of the frame's
+/// origin and axes. `at`: the start point, which has no tangent; `direction_tangent`: tangent of the ray's optical
+/// direction, in the direction of the trace towards the scene.
+template <int N>
+inline void add_start(Vec3d at, Vec3d direction_tangent, AdjointStep<N>& step, int lane) {
+    // The ray's direction is opposite to that of the light, whose path to a displaced end grows by -p . v.
+    step.add(kFrameOrigin, lane, direction_tangent);
+    step.add(kFrameX, lane, at.x * direction_tangent);
+    step.add(kFrameY, lane, at.y * direction_tangent);
+    step.add(kFrameZ, lane, at.z * direction_tangent);
+}
+
+/// Computes the tangent of one ray behind a surface from that in front of it, and adds the contributions of the
+/// surface's frame and numbers, and of the medium in front of it, to `step`. `o`, `p`: the ray in front of the surface;
+/// `rays` holds the ray behind it and its tangent in front of it, both in the surface's frame.
+///
+/// The direction behind a surface is p' = p + k G, with the gradient G of the surface. Because |p| and |p'| are the
+/// refractive indices, which the tangent does not change, dk = -k (dp . G + p' . dG) / (p' . G).
+template <int N, class SurfacePoint>
+inline void push_tangent(const SurfacePoint& point, Vec3d o, Vec3d p, TangentRays<N>& rays, AdjointStep<N>& step,
+                         int lane) {
+    const Vec3d at = rays.origin[lane], behind = rays.direction[lane], tangent = rays.direction_tangent[lane];
+    const Vec3d gradient = point.gradient(), bend = behind - p;
+    const double t = dot(at - o, p) / dot(p, p);
+    const Vec3d moved = rays.origin_tangent[lane] + t * tangent;
+    const double t_tangent = -dot(gradient, moved) / dot(gradient, p);
+    const Vec3d at_tangent = moved + t_tangent * p;
+    const Vec3d gradient_tangent = point.point_adjoint(at_tangent);  // the second derivatives are symmetric
+    const double along = dot(behind, gradient), strength = dot(bend, gradient) / dot(gradient, gradient);
+    // At the critical angle the derivative is infinite; it is replaced by 0.
+    const double strength_tangent =
+        select(along != 0, -strength * (dot(tangent, gradient) + dot(behind, gradient_tangent)) / along, 0.0);
+    const Vec3d bend_tangent = strength_tangent * gradient + strength * gradient_tangent;
+    rays.origin_tangent.set(lane, at_tangent);
+    rays.direction_tangent.set(lane, tangent + bend_tangent);
+    step.add(kFrameOrigin, lane, bend_tangent);
+    step.add(kFrameX, lane, at_tangent.x * bend + at.x * bend_tangent);
+    step.add(kFrameY, lane, at_tangent.y * bend + at.y * bend_tangent);
+    step.add(kFrameZ, lane, at_tangent.z * bend + at.z * bend_tangent);
+    step.add(kIndexSquared, lane, -0.5 * t_tangent);  // H by n is the length n t
+    point.add_numbers(-strength * at_tangent, strength_tangent, step, lane);
+}
+
+/// Surface with the data for the tangents of rays that cross it.
+struct TangentSurface {
+    SurfaceView<double> traced;  ///< without rims
+    SurfaceView<double> view;  ///< its kind is the one that the variables require
+    FrameChange<double> before;  ///< from the frame of the previous surface to that of this one
+    const FreeformView<double>* freeform;  ///< null unless it is one
+    const DualSurface* duals;  ///< its dual surfaces
+    int dual_count;
+};
+
+/// Calls f(point of the surface, lane) for the points of N rays.
+template <int N, class F>
+inline void for_surface_points(const TangentSurface& surface, const Vec3Lanes<double, N>& at, Dual8* form_sums, F&& f) {
+    const SurfaceView<double> view = surface.view;
+    if (view.kind == SurfaceShape::freeform) {
+        for (int i = 0; i < N; ++i)
+            f(FreeformPoint(surface.duals, surface.dual_count, form_sums + i * surface.dual_count, at[i]), i);
+    } else if (view.kind == SurfaceShape::asphere) {
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) f(AspherePoint(view, at[i]), i);
+    } else {
+        // A sphere is a conic with the conic factor 1.
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) f(ConicPoint{view.curvature, view.conic_factor, at[i]}, i);
+    }
+}
+
+/// Replaces rays that have missed a surface, or were totally reflected, by one that passes, without a tangent. `o`,
+/// `p`: rays in front of the surface. Returns false if no ray passes.
+template <int N>
+inline bool replace_ended(TangentRays<N>& rays, Vec3Lanes<double, N>& o, Vec3Lanes<double, N>& p) {
+    int passing = 0;
+    while (passing < N && rays.status[passing] != 0) ++passing;
+    if (passing == N) return false;
+    for (int i = 0; i < N; ++i) {
+        if (rays.status[i] == 0) continue;
+        rays.origin.set(i, rays.origin[passing]);
+        rays.direction.set(i, rays.direction[passing]);
+        rays.origin_tangent.set(i, {0, 0, 0});
+        rays.direction_tangent.set(i, {0, 0, 0});
+        rays.status[i] = 0;
+        o.set(i, o[passing]);
+        p.set(i, p[passing]);
+    }
+    return true;
+}
+
+/// Traces N rays and their tangents through one surface, which blocks none of them, and adds the contributions of its
+/// numbers to `step`. `form_sums`: for freeforms, the contributions of their own variables: for each lane, as many
+/// dual numbers as there are dual surfaces.
+template <int N>
+inline void trace_tangents(const TangentSurface& surface, TangentRays<N>& rays, AdjointStep<N>& step,
+                           Dual8* form_sums) {
+    const FrameChange<double> frame = surface.before;
+    Vec3Lanes<double, N> o, p;
+    if (frame.changes) {
+        change_frame(frame, static_cast<LensRays<double, N>&>(rays));
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) {
+            rays.origin_tangent.set(i, frame.direction(rays.origin_tangent[i]));
+            rays.direction_tangent.set(i, frame.direction(rays.direction_tangent[i]));
+        }
+    }
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        Vec3d from = rays.origin[i];
+        from.z -= surface.traced.shift;
+        o.set(i, from);
+        p.set(i, rays.direction[i]);
+    }
+    // The frame has already been changed.
+    const LensView<double> one{&surface.traced, 1, LensKind::any, {}, {nullptr, surface.freeform, nullptr}};
+    trace_lens<LensKind::any>(one, static_cast<LensRays<double, N>&>(rays));
+    int ended = 0;
+    for (int i = 0; i < N; ++i) ended |= rays.status[i];
+    if (ended != 0 && !replace_ended(rays, o, p)) return;
+    for_surface_points(surface, rays.origin, form_sums,
+                       [&](const auto& point, int i) { push_tangent(point, o[i], p[i], rays, step, i); });
+}
+
+}  // namespace REALCAM_NAMESPACE

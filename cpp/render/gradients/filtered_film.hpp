@@ -1,0 +1,67 @@
+#pragma once
+#include <cmath>
+
+#include "../../camera/film/pixel_filter.hpp"
+#include "../../math/color.hpp"
+#include "../../math/vec3.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Pixels that a film point counts for, with the filter's weights. A point of the film counts for the pixels whose
+/// filter does not vanish there, at most four along each axis.
+struct FilterWeights {
+    static constexpr int kMost = 4;
+
+    int first;  ///< first column or row
+    FilterValue of[kMost];
+
+    /// `position`: of the film point along columns or rows, in pixels from the picture's edge.
+    REALCAM_INLINE FilterWeights(PixelFilter filter, float position) {
+        const float lowest = position - 0.5f - filter_radius(filter);
+        first = static_cast<int>(std::floor(lowest)) + 1;
+        for (int i = 0; i < kMost; ++i) of[i] = filter_value(filter, position - 0.5f - static_cast<float>(first + i));
+    }
+};
+
+/// Calls f(index of the pixel, value of its filter, derivatives of that value along columns and rows) for each pixel of
+/// a picture that a film point counts for. `at`: the film point, in pixels from the picture's upper left corner.
+template <class F>
+REALCAM_INLINE void for_filtered_pixels(PixelFilter filter, int width, int height, Vec2f at, F&& f) {
+    const FilterWeights columns(filter, at.x), rows(filter, at.y);
+    for (int j = 0; j < FilterWeights::kMost; ++j) {
+        const int row = rows.first + j;
+        if (row < 0 || row >= height) continue;
+        for (int i = 0; i < FilterWeights::kMost; ++i) {
+            const int column = columns.first + i;
+            if (column < 0 || column >= width) continue;
+            const FilterValue x = columns.of[i], y = rows.of[j];
+            f(row * width + column, x.value * y.value, Vec2f{x.slope * y.value, x.value * y.slope});
+        }
+    }
+}
+
+/// Adjoint picture, as a function of the film: the sum over the pixels of their filters times their adjoints, the
+/// derivatives of a function of the picture by the pixels.
+struct AdjointFilm {
+    PixelFilter filter;
+    int width, height;
+    const float* adjoint;  ///< height x width x 3
+    const float* control;  ///< height x width: sum over the channels of the adjoint times a control variate of the
+                           ///< radiance; null: none
+
+    /// Returns the derivative of the function by the light of a sample at a film point, and the gradient of that
+    /// derivative along columns and rows. `light`: the sample's weight times its radiance; the control variate has the
+    /// same `weight`.
+    REALCAM_INLINE Vec3f operator()(Vec2f at, Color light, float weight) const {
+        Vec3f sum = {0, 0, 0};
+        for_filtered_pixels(filter, width, height, at, [&](int pixel, float value, Vec2f slope) {
+            const float* a = adjoint + 3 * pixel;
+            float of_light = a[0] * light.r + a[1] * light.g + a[2] * light.b;
+            if (control) of_light -= weight * control[pixel];
+            sum += of_light * Vec3f{value, slope.x, slope.y};
+        });
+        return sum;
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

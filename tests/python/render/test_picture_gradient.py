@@ -1,0 +1,205 @@
+"""rc.render_gradient: its parameters and units, beside central differences of pictures with common random numbers. The
+core's own tests (test_picture_gradient.cpp) have closed forms. Each estimate has 16 seeds, whose spread is its standard
+error; 4.5 of these are allowed, and the seeds are fixed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import realcam as rc
+from numpy.typing import NDArray
+
+from ..scenes import quad, scene_of, sky
+
+SEEDS = 16
+ERRORS = 4.5
+
+
+def stripes(occluder: bool = True) -> rc.Scene:
+    """Stripes of random colours at 3 m, and an edge at 1.4 m that hides some of them."""
+    random = np.random.default_rng(3)
+    quads = [quad((-1.15 + 0.1 * i, 0, -3), 0.05, 1.5, emission=random.uniform(0.2, 2, 3)) for i in range(24)]
+    if occluder:
+        right, up = (np.cos(0.3), np.sin(0.3), 0.0), (-np.sin(0.3), np.cos(0.3), 0.0)
+        middle = -1.2 * np.array(right) + (0, 0, -1.4)
+        quads.append(quad(middle, 1.5, 1.5, right=right, up=up))
+    return scene_of(*quads)
+
+
+def corner_camera(f_number: float = 4.0) -> rc.Camera:
+    """A few pixels of the double Gauss, off its axis, where rims vignette."""
+    lens = rc.Lens.load("double-gauss-50mm").focused(2.0).stopped_down(f_number)
+    return rc.Camera(lens, film=rc.Film(0.8, 0.8, (8, 8), shift_mm=(10, 6)), exposure_time_s=1.0)
+
+
+ADJOINT = np.random.default_rng(5).normal(size=(8, 8, 3))
+
+
+def estimate(of_seed: Callable[[int], NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Mean over the seeds, and its standard error."""
+    values = np.array([of_seed(seed) for seed in range(SEEDS)], float)
+    return values.mean(0), values.std(0, ddof=1) / np.sqrt(SEEDS)
+
+
+def difference(
+    scene: rc.Scene, below: rc.Camera, above: rc.Camera, step: float, *, spp: int = 128, filter: str = "tent"
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Central difference of sum(ADJOINT * picture) between cameras 2 steps apart."""
+
+    def of_seed(seed: int) -> NDArray[np.float64]:
+        to, start = (
+            rc.render_filtered(scene, camera, filter=filter, spp=spp, seed=1000 + seed, max_bounces=0).astype(float)
+            for camera in (above, below)
+        )
+        return np.asarray(((to - start) * ADJOINT).sum() / (2 * step))
+
+    return estimate(of_seed)
+
+
+def changed(camera: rc.Camera, parameter: str, step: float) -> rc.Camera:
+    """The camera, which must be at the origin, with a parameter changed."""
+    lens, shift = camera.lens, camera.film.shift_mm
+    angle = np.radians(step)
+    if parameter in ("right_m", "up_m", "backward_m"):
+        move = step * np.eye(3)[("right_m", "up_m", "backward_m").index(parameter)]
+        return camera.replace(position=tuple(move), look_at=tuple(move - (0, 0, 1)))
+    if parameter == "pitch_deg":
+        return camera.replace(look_at=(0, np.sin(angle), -np.cos(angle)))
+    if parameter == "yaw_deg":
+        return camera.replace(look_at=(-np.sin(angle), 0, -np.cos(angle)))
+    if parameter == "roll_deg":
+        return camera.replace(up=(-np.sin(angle), np.cos(angle), 0))
+    if parameter == "film_shift_right_mm":
+        return camera.replace(film=camera.film.replace(shift_mm=(shift[0] + step, shift[1])))
+    if parameter == "film_shift_up_mm":
+        return camera.replace(film=camera.film.replace(shift_mm=(shift[0], shift[1] + step)))
+    if parameter == "focus_distance_m":
+        return camera.replace(lens=lens.focused(lens.focus_distance_m + step))
+    assert parameter == "f_number"
+    return camera.replace(lens=lens.stopped_down(lens.f_number + step))
+
+
+STEPS = {
+    "right_m": 2e-4,
+    "up_m": 2e-4,
+    "backward_m": 1e-3,
+    "pitch_deg": 0.02,
+    "yaw_deg": 0.02,
+    "roll_deg": 0.1,
+    "film_shift_right_mm": 0.02,
+    "film_shift_up_mm": 0.02,
+    "focus_distance_m": 0.05,
+    "f_number": 0.05,
+}
+
+
+def check_against_differences(scene: rc.Scene, camera: rc.Camera, filter: str, spp: int, parameters: list[str]) -> None:
+    found, error = estimate(
+        lambda seed: rc.render_gradient(
+            scene, camera, parameters, ADJOINT, filter=filter, spp=spp, seed=seed, max_bounces=0
+        )
+    )
+    for i, parameter in enumerate(parameters):
+        step = STEPS[parameter]
+        wanted, wanted_error = difference(
+            scene, changed(camera, parameter, -step), changed(camera, parameter, step), step, spp=2 * spp, filter=filter
+        )
+        z = (found[i] - wanted) / np.hypot(error[i], wanted_error)
+        assert abs(z) < ERRORS, f"{parameter}: {found[i]} +- {error[i]}, wanted {wanted} +- {wanted_error}"
+
+
+def test_rings_pose_and_film_equal_differences() -> None:
+    parameters = ["focus_distance_m", "f_number", "yaw_deg", "film_shift_right_mm"]
+    check_against_differences(stripes(), corner_camera(), "tent", 48, parameters)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("filter", ["tent", "gaussian"])
+@pytest.mark.parametrize("f_number", [2.2, 4.0])
+@pytest.mark.parametrize("occluder", [False, True])
+def test_all_parameters_equal_differences(filter: str, f_number: float, occluder: bool) -> None:
+    check_against_differences(stripes(occluder), corner_camera(f_number), filter, 512, list(STEPS))
+
+
+def test_control_variate_changes_the_noise_but_not_the_mean() -> None:
+    scene, camera = stripes(), corner_camera()
+    parameters = ["up_m", "focus_distance_m", rc.Variable.radius(0)]
+
+    def with_control(spp: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return estimate(
+            lambda seed: rc.render_gradient(
+                scene, camera, parameters, ADJOINT, spp=32, seed=seed, control_spp=spp, max_bounces=0
+            )
+        )
+
+    (mean, error), (plain_mean, plain_error) = with_control(8), with_control(0)
+    assert np.all(np.abs(mean - plain_mean) < ERRORS * np.hypot(error, plain_error))
+
+
+def test_forward_is_the_transpose_of_reverse() -> None:
+    scene, camera = stripes(), corner_camera()
+    parameters = ["right_m", "f_number", "focus_distance_m", rc.Variable.thickness(1)]
+    settings = {"spp": 4, "control_spp": 4, "max_bounces": 0}
+    pictures = rc.render_gradient(scene, camera, parameters, **settings)
+    assert pictures.shape == (4, 8, 8, 3)
+    reverse = rc.render_gradient(scene, camera, parameters, ADJOINT, **settings)
+    sizes = np.abs(pictures * ADJOINT).sum((1, 2, 3))
+    # Pictures, and the adjoint at a film point, are rounded to float32.
+    assert np.all(np.abs((pictures * ADJOINT).sum((1, 2, 3)) - reverse) < 1e-5 * sizes)
+
+
+def test_even_light_has_no_derivative_by_pose() -> None:
+    # The control variate is the radiance itself.
+    gradient = rc.render_gradient(sky(), corner_camera(), ["right_m", "up_m", "yaw_deg"], ADJOINT, spp=4)
+    assert np.all(np.abs(gradient) < 1e-4)
+
+
+def test_filtered_picture_is_the_tent_of_a_finer_picture() -> None:
+    scene, camera = stripes(), corner_camera()
+    # 16 x 16 fine pixels per pixel, on a film that is one pixel wider on each side.
+    fine_film = camera.film.replace(width_mm=1.0, height_mm=1.0, resolution=(160, 160))
+    offsets = (np.arange(32) + 0.5) / 16 - 1
+    tent = (1 - np.abs(offsets)) / 16
+
+    def coarse(seed: int) -> NDArray[np.float64]:
+        fine = rc.render(
+            scene, camera.replace(film=fine_film), spp=4, seed=seed, max_bounces=0, effects=()
+        ).exposure.astype(float)
+        rows = np.stack([np.tensordot(tent, fine[16 * i + 8 : 16 * i + 40], 1) for i in range(8)])
+        return np.stack([np.tensordot(tent, rows[:, 16 * i + 8 : 16 * i + 40], (0, 1)) for i in range(8)], 1)
+
+    wanted, wanted_error = estimate(coarse)
+    found, error = estimate(lambda seed: rc.render_filtered(scene, camera, spp=128, seed=seed, max_bounces=0))
+    # The midpoints of 32 fine pixels integrate the tent to 1e-3.
+    assert np.all(np.abs(found - wanted) < ERRORS * np.hypot(error, wanted_error) + 1e-3 * wanted)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "message"),
+    [
+        ({"filter": "box"}, "need a smooth pixel filter"),
+        ({"filter": "lanczos"}, 'unknown filter "lanczos"; expected box, tent or gaussian'),
+        ({"effects": "ghosts"}, "do not support the effect ghosts"),
+        ({"spp": "auto"}, "take no noise goal"),
+        ({"parameters": "zoom"}, "unknown parameter 'zoom'"),
+        ({"parameters": []}, "at least one"),
+        ({"parameters": ["up_m", "up_m"]}, "must be distinct"),
+        ({"adjoint": np.zeros((8, 8))}, "must be an array of shape (8, 8, 3)"),
+    ],
+)
+def test_what_is_not_supported_is_refused_by_name(keywords: dict[str, object], message: str) -> None:
+    arguments: dict[str, object] = {"parameters": "up_m", "adjoint": ADJOINT, **keywords}
+    with pytest.raises(rc.InputError) as error:
+        rc.render_gradient(sky(), corner_camera(), **arguments)  # type: ignore[arg-type]
+    assert message in str(error.value)
+
+
+def test_rings_at_their_ends_are_refused() -> None:
+    camera = corner_camera()
+    wide_open = camera.replace(lens=rc.Lens.load("double-gauss-50mm"))
+    with pytest.raises(rc.InputError, match="does not exist wide open"):
+        rc.render_gradient(sky(), wide_open, "f_number", ADJOINT)
+    with pytest.raises(rc.InputError, match="does not exist at infinity"):
+        rc.render_gradient(sky(), wide_open, "focus_distance_m", ADJOINT)
