@@ -8,6 +8,7 @@ import pickle
 import numpy as np
 import pytest
 import realcam as rc
+from realcam.calibration.camera import lens_choice
 from realcam.calibration.models import opencv_models
 
 from .. import scenes
@@ -161,6 +162,9 @@ def test_measured_vignetting_replaces_that_of_the_lens() -> None:
     np.testing.assert_allclose(taken[middle].mean(), plain[middle].mean(), rtol=0.005)
     with pytest.raises(rc.InputError, match=r"times as bright as lens .* degrees from the axis"):
         made_from.camera(lens, vignetting=rc.Vignetting(lambda pixels, size: 1 / cosine(pixels, size) ** 9))
+    dark = rc.Lens.load("landscape-100mm").stopped_down(64)  # sees 30 degrees to the side
+    with pytest.raises(rc.InputError, match=r"has light where lens landscape-100mm brings none, at pixel .* degrees"):
+        calibration(150.0).camera(dark, vignetting=rc.Vignetting(cosine))
 
 
 def test_a_lens_is_chosen_and_named() -> None:
@@ -169,6 +173,21 @@ def test_a_lens_is_chosen_and_named() -> None:
     assert camera.lens.f_number == pytest.approx(4, rel=1e-3)
     with pytest.raises(rc.InputError, match=r"a lens of f = .* mm that sees .* opens to f/0.4; the nearest is"):
         calibration(skewed=0).camera("auto", f_number=0.4)
+
+
+def test_an_automatic_lens_lights_the_picture_at_every_aperture(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The rims of a landscape lens pass light of 35 degrees only wide open: its stop lies in front of it."""
+    made_from = rc.Calibration.opencv([[200, 0, 119.5], [0, 200, 79.5], [0, 0, 1]], [-0.1, 0, 0, 0], (240, 160))
+    monkeypatch.setattr(lens_choice, "lens_names", lambda: ["landscape-100mm"])
+    with pytest.raises(rc.InputError, match=r"the nearest is landscape-100mm, .* no light .* at f/64; give one as"):
+        made_from.camera("auto")
+    monkeypatch.setattr(lens_choice, "lens_names", lambda: ["landscape-100mm", "angulon-210mm"])
+    camera = made_from.camera("auto")
+    assert camera.lens.name == "angulon-210mm"
+    corners = [[0.5, 0.5], [239.5, 0.5], [0.5, 159.5], [239.5, 159.5]]
+    for f_number in (camera.lens.f_number, 16, 64):
+        light = camera.replace(lens=camera.lens.stopped_down(f_number)).ray(corners, return_light=True)[2]
+        assert light.min() > 0.02
 
 
 def test_the_pose_is_that_of_the_centre_of_projection() -> None:

@@ -27,7 +27,25 @@ WRITERS = {
     "openjd": ("job", "make", "shot.toml", "-o", "new.job", "--openjd"),
     "compare": ("compare", "shot.toml", "--vary", "f_number=4,8", "--size", "16", "-o"),
     "render": ("render", "shot.toml", "--device", "cpu", "-o"),
+    "convert": ("calibration", "convert", "camera.yml", "--to", "opencv"),
+    "of a map": ("calibration", "convert", "stmap.exr", "--to", "stmap"),
+    "calibrated": ("render", "calibrated.toml", "--lens", "wide-24mm", "--resolution", "8x4", "--device", "cpu", "-o"),
+    "undistort": ("calibration", "undistort", "camera.yml", "sky.png", "-o"),
 }
+CAMERA = """%YAML:1.0
+camera_matrix: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [ 20., 0., 8., 0., 20., 4., 0., 0., 1. ]
+distortion_coefficients: !!opencv-matrix
+   rows: 1
+   cols: 4
+   dt: d
+   data: [ -0.1, 0., 0., 0. ]
+image_width: 16
+image_height: 8
+"""
 
 
 @pytest.fixture(scope="module")
@@ -38,13 +56,19 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     words = ["render", "quad.obj", "-o", "sky.png", "--resolution", "16x8", "--spp", "1", "--quiet"]
     subprocess.run([*PYTHON, *words], cwd=folder, check=True)
     (folder / "shot.toml").write_text(SHOT)
+    (folder / "camera.yml").write_text(CAMERA)
+    made = ["calibration", "convert", "camera.yml", "stmap.exr", "--quiet"]
+    subprocess.run([*PYTHON, *made], cwd=folder, check=True)
+    (folder / "calibrated.toml").write_text(f'{SHOT}[calibration]\nfile = "camera.yml"\nvignetting = "flat.png"\n')
+    shutil.copy(folder / "sky.png", folder / "flat.png")
     return folder
 
 
 @pytest.mark.parametrize(
     ("writer", "target"),
     [(w, t) for w in ("sbatch", "openjd") for t in ("shot.toml", "./quad.obj", "quad.mtl", "link")]
-    + [(w, t) for w in ("compare", "render") for t in ("sky.png", "link.png")],
+    + [(w, t) for w in ("compare", "render", "undistort") for t in ("sky.png", "link.png")]
+    + [("convert", "camera.yml"), ("of a map", "stmap.exr"), ("calibrated", "flat.png")],
 )
 def test_inputs_stay(inputs: Path, tmp_path: Path, writer: str, target: str) -> None:
     folder = tmp_path / "work"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -38,12 +38,14 @@ def chosen_lens(calibration: CalibratedPicture, film: Film, f_number: float | No
         if candidate is not None:
             candidates.append(candidate)
     candidates.sort(key=lambda candidate: (bool(candidate.lacks), candidate.rotation_deg))
-    for candidate in candidates:
+    for index, candidate in enumerate(candidates):
         if candidate.lacks or candidate.rotation_deg > LARGEST_ROTATION_DEG:
             break
         smallest = candidate.lens.stopped_down(max(_SMALLEST_APERTURE, candidate.lens.f_number))
-        if _lights(candidate.lens, film, pixels) and _lights(smallest, film, pixels):
+        dark = [lens.f_number for lens in (candidate.lens, smallest) if not _lights(lens, film, pixels)]
+        if not dark:
             return candidate.lens
+        candidates[index] = replace(candidate, lacks=f"it brings no light to parts of the picture at f/{dark[0]:.3g}")
     raise InputError(_refusal(calibration, focal_length_mm, f_number, directions, candidates))
 
 
