@@ -13,6 +13,7 @@ from typing_extensions import CapsuleType, Self, TypeVar, Unpack
 
 from .derivatives import Gradient, Variable
 from .image import Image
+from .ocio import OcioView
 from .raw_image import RawImage
 from .vision.lens_calibration import LensCalibration
 

@@ -33,7 +33,7 @@ class _Files(ocio.PyConfigIOProxy):  # type: ignore[misc]
         self.problem = ""
         self._left = _MAX_ALL_LUT_BYTES
         self._last: tuple[str, Any] = ("", None)
-        self._text = _read_file(path, _MAX_CONFIG_BYTES).decode(errors="replace")
+        self._text: str = _read_file(path, _MAX_CONFIG_BYTES).decode(errors="replace")
 
     def getConfigData(self) -> str:  # noqa: N802
         """Returns the text of the configuration."""
