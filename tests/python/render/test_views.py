@@ -309,7 +309,9 @@ def test_textures_of_colours_are_converted_and_no_others(tmp_path: Path) -> None
         expected = np.maximum(rec709_from(STUDIO, color_space, fractions), 0)
         found = mean_color(path, ocio=STUDIO, texture_color_space=color_space)
         np.testing.assert_allclose(found, expected / expected.sum(), rtol=1e-4)
-    material = '[material.m]\nnormal_map = "t.png"\nmetallic_roughness_texture = "t.png"\nroughness = 0.5\n'
+    material = (
+        '[material.m]\nmodel = "metallic_roughness"\nnormal_map = "t.png"\nmetallic_roughness_texture = "t.png"\n'
+    )
     (tmp_path / "quad.mtl").write_text("newmtl m\nKd 0.5 0.5 0.5\n")
     (tmp_path / "quad.obj").write_text("mtllib quad.mtl\nusemtl m\n" + QUAD)
     (tmp_path / "shot.toml").write_text(SHOT + material)
@@ -370,7 +372,8 @@ def test_the_executable_says_who_has_views(tmp_path: Path) -> None:
     done = subprocess.run([*EXECUTABLE, *words], capture_output=True, text=True)
     assert done.returncode == 2
     assert done.stderr == (
-        f"realcam: error: {STUDIO}: this program has no OpenColorIO; the command of the Python package realcam[color] has it\n"
+        f"realcam: error: {STUDIO}: this program has no OpenColorIO; the command of the Python package realcam[color] has "
+        "it\n"
     )
     done = subprocess.run(
         [*EXECUTABLE, "render", path, "-q", "-o", tmp_path / "a.exr", "--exr-color-space", "acescg"],
