@@ -330,7 +330,8 @@ private:
               keep_going);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         return options_.as_json
-                   ? render_as_json(shot, request, *view_, image, files, plan_summary, denoiser_name, warnings_, seconds)
+                   ? render_as_json(shot, request, *view_, image, files, plan_summary, denoiser_name, warnings_,
+                                    seconds)
                    : summary(shot, request.settings, image, files, denoiser_name, seconds, options_.verbose);
     }
 

@@ -73,7 +73,8 @@ void write_settings(JsonWriter& json, const shot::ShotRequest& request, const Vi
     const RenderSettings& settings = request.settings;
     json.key("seed").number(settings.seed).key("max_bounces").number(settings.path().max_bounces);
     json.key("transport").text(name_of(settings.transport)).key("clamp_cd_m2").number(settings.clamp);
-    for (const auto& [name, value] : view.entries()) json.key(name.substr(name.find(':') + 1)).text(io::printable(value));
+    for (const auto& [name, value] : view.entries())
+        json.key(name.substr(name.find(':') + 1)).text(io::printable(value));
     write_texts(json, "effects", names_of(settings.effects));
     const auto light = settings.spectral_light();
     json.key("illuminant").text(light ? light->text() : "").key("plan").text(plan);

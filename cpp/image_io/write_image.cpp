@@ -75,7 +75,8 @@ EncodedPicture picture_header(const WrittenFormat& format, int width, int height
 EncodedPicture developed_header(const WrittenFormat& format, int width, int height, const Entries& entries,
                                 bool is_srgb) {
     EncodedPicture picture = picture_header(format, width, height, entries);
-    if (is_srgb) picture.attributes.emplace_back("oiio:ColorSpace", "sRGB");
+    // Without this attribute OpenImageIO declares sRGB.
+    picture.attributes.emplace_back("oiio:ColorSpace", is_srgb ? "sRGB" : "unknown");
     if (picture.format == "jpeg") picture.attributes.emplace_back("jpeg:subsampling", "4:4:4");
     if (picture.format == "jpeg" || picture.format == "tiff") {
         // JPEG and TIFF have no attributes with arbitrary names, and WebP has no text at all.

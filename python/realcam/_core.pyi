@@ -13,6 +13,7 @@ from typing_extensions import CapsuleType, Self, TypeVar, Unpack
 
 from .derivatives import Gradient, Variable
 from .image import Image
+from .ocio import OcioView
 from .raw_image import RawImage
 from .vision.lens_calibration import LensCalibration
 
@@ -31,7 +32,8 @@ class _Shot(TypedDict):
     scene: Scene
     camera: Camera
     settings: RenderSettings
-    tone: str
+    tone: str | OcioView
+    exr_color_space: str
     keys: tuple[CameraKey, ...]
     shake: Shake | None
     iso_follows_s: float | None
@@ -3109,7 +3111,7 @@ class RenderSettings:
       noise is 2 codes, for 60 seconds at most]. A tile has 16 x 16 pixels (docs/sampling.md).
     noise: Noise goal, unless spp is a number: relative to a tile's light, such as 0.01. It is the RMS error of the tile's
       pixels as a fraction of their mean, or of a hundredth of white if that is larger.
-    noise_codes: The same noise goal in 8-bit codes of the developed picture.
+    noise_codes: The same noise goal in 8-bit codes of the picture with the linear tone curve, under every view.
     seconds: Time limit for taking samples, unless spp is a number. A warning is issued if the noise goal is not reached.
     max_spp: Largest number of samples per pixel, unless spp is a number [4096].
     seed: Seed of the random numbers [0]. 0 to 2^32 - 1.
@@ -3226,7 +3228,7 @@ class RenderSettings:
     @property
     def noise_codes(self) -> float | None:
         """
-        The same noise goal in 8-bit codes of the developed picture.
+        The same noise goal in 8-bit codes of the picture with the linear tone curve, under every view.
         """
     @property
     def pupil_sampling(self) -> str:
@@ -4315,9 +4317,9 @@ def _read_picture(path: bytes) -> tuple[NDArray[np.float32], list[str]]:
     Internal: use realcam.image_file.read_picture. Returns the pixels (H, W, 3) and a list of warnings.
     """
 
-def _write_picture(path: bytes, image: Image, film_tone: bool) -> None:
+def _write_picture(path: bytes, image: Image, tone: str | OcioView, exr_color_space: str) -> None:
     """
-    Internal: use Image.save. film_tone: True for the tone curve "film", False for "linear".
+    Internal: use Image.save.
     """
 
 def _metadata(image: Image) -> dict[str, str]:
@@ -4325,9 +4327,14 @@ def _metadata(image: Image) -> dict[str, str]:
     Internal: use Image.metadata. Returns the metadata of picture files, text by name.
     """
 
-def _write_codes(path: bytes, codes: ArrayLike, entries: Sequence[tuple[str, str]]) -> None:
+def _write_codes(path: bytes, codes: ArrayLike, entries: Sequence[tuple[str, str]], is_srgb: bool) -> None:
     """
-    Internal. Writes 8-bit sRGB values (H, W, 3) with metadata, pairs (name, value), to an image file.
+    Internal. Writes 8-bit display values (H, W, 3) with metadata, pairs (name, value), to an image file. is_srgb: True if it declares sRGB.
+    """
+
+def _read_file(path: str | os.PathLike[str], max_bytes: int) -> bytes:
+    """
+    Internal. Returns the content of a regular file of at most max_bytes. Raises InputError with the reason.
     """
 
 def _read_film(path: bytes) -> tuple[NDArray[np.float32], list[tuple[str, str]]]:

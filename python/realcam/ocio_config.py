@@ -33,7 +33,7 @@ class _Files(ocio.PyConfigIOProxy):  # type: ignore[misc]
         self.problem = ""
         self._left = _MAX_ALL_LUT_BYTES
         self._last: tuple[str, Any] = ("", None)
-        self._text = _read_file(path, _MAX_CONFIG_BYTES).decode(errors="replace")
+        self._text: str = _read_file(path, _MAX_CONFIG_BYTES).decode(errors="replace")
 
     def getConfigData(self) -> str:  # noqa: N802
         """Returns the text of the configuration."""
@@ -143,7 +143,7 @@ class OcioConfig:
     @contextmanager
     def _errors_named(self) -> Iterator[None]:
         """Raises errors of OpenColorIO as InputErrors in one line that begins with the configuration's name. Its remarks
-        are not printed, because they quote a stranger's text as it is."""
+        are not printed: they quote a stranger's text unchanged."""
         level = ocio.GetLoggingLevel()
         ocio.SetLoggingLevel(ocio.LOGGING_LEVEL_NONE)
         try:

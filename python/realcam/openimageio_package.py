@@ -151,7 +151,9 @@ class Encoder:
             if isinstance(value, (str, float)):
                 spec.attribute(key, value)
             else:
-                spec.attribute(key, oiio.TypeDesc("vec2" if len(value) == 2 else f"float[{len(value)}]"), tuple(value))
+                is_vector = len(value) == 2
+                type_ = oiio.TypeDesc(oiio.FLOAT, oiio.VEC2) if is_vector else oiio.TypeDesc(f"float[{len(value)}]")
+                spec.attribute(key, type_, tuple(value))
         output = oiio.ImageOutput.create(format)
         if output is None:
             raise OSError(f"OpenImageIO cannot write .{format}: {_text(oiio.geterror)}")

@@ -1,5 +1,5 @@
-"""Changes configurations of OpenColorIO and their look-up tables, and makes views of them: each must become a view, or an
-error in one line.
+"""Changes configurations of OpenColorIO and their look-up tables, and makes views of them: each must become a view, or
+an error in one line.
 
 See many_mutations.py. It needs the package opencolorio (realcam[color]).
 """

@@ -278,7 +278,7 @@ def mean_color(path: Path, **values: object) -> np.ndarray:
 
 def test_environments_are_converted_from_their_colour_space(tmp_path: Path) -> None:
     path = shot_file(tmp_path)
-    color = (0.6, 0.3, 0.1)
+    color = (0.5, 0.45, 0.4)
     for name in ("sky.exr", "sky_cg.exr"):
         written(tmp_path / name, np.full((4, 8, 3), color, np.float32))
     away = {"position_m": (0, 0, 3), "look_at_m": (0, 0, 9), "focus_m": 5}
@@ -309,7 +309,9 @@ def test_textures_of_colours_are_converted_and_no_others(tmp_path: Path) -> None
         expected = np.maximum(rec709_from(STUDIO, color_space, fractions), 0)
         found = mean_color(path, ocio=STUDIO, texture_color_space=color_space)
         np.testing.assert_allclose(found, expected / expected.sum(), rtol=1e-4)
-    material = '[material.m]\nnormal_texture = "t.png"\nroughness_texture = "t.png"\n'
+    material = (
+        '[material.m]\nmodel = "metallic_roughness"\nnormal_map = "t.png"\nmetallic_roughness_texture = "t.png"\n'
+    )
     (tmp_path / "quad.mtl").write_text("newmtl m\nKd 0.5 0.5 0.5\n")
     (tmp_path / "quad.obj").write_text("mtllib quad.mtl\nusemtl m\n" + QUAD)
     (tmp_path / "shot.toml").write_text(SHOT + material)
@@ -339,8 +341,8 @@ def test_mistakes_are_one_line(tmp_path: Path) -> None:
         [*PYTHON, "render", path, "-o", tmp_path / "a.png", "--view", "x"], capture_output=True, text=True
     )
     assert (done.returncode, done.stderr) == (
-        1,
-        'realcam: --view belongs to a configuration of OpenColorIO, and "ocio" names none\n',
+        2,
+        'realcam: error: --view belongs to a configuration of OpenColorIO, and "ocio" names none\n',
     )
     assert not (tmp_path / "a.png").exists()
 
@@ -358,8 +360,8 @@ def test_without_the_extra_one_line_names_it(tmp_path: Path, command: str) -> No
         assert done.returncode == 0
         return
     assert (done.returncode, done.stderr) == (
-        1,
-        f"realcam: {STUDIO}: configurations need OpenColorIO: pip install realcam[color]\n",
+        2,
+        f"realcam: error: {STUDIO}: configurations need OpenColorIO: pip install realcam[color]\n",
     )
 
 
@@ -368,9 +370,10 @@ def test_the_executable_says_who_has_views(tmp_path: Path) -> None:
     path = shot_file(tmp_path)
     words = ["render", path, "-o", tmp_path / "a.png", "--ocio", STUDIO]
     done = subprocess.run([*EXECUTABLE, *words], capture_output=True, text=True)
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert done.stderr == (
-        f"realcam: {STUDIO}: this program has no OpenColorIO; the command of the Python package realcam[color] has it\n"
+        f"realcam: error: {STUDIO}: this program has no OpenColorIO; the command of the Python package realcam[color] has "
+        "it\n"
     )
     done = subprocess.run(
         [*EXECUTABLE, "render", path, "-q", "-o", tmp_path / "a.exr", "--exr-color-space", "acescg"],
