@@ -1,8 +1,8 @@
 """The rays that pass a lens, as those whose points lie inside all of a few circles.
 
 Each rim of a lens, and its stop, is a circle that a ray crosses at a smooth function of the film point x and the point
-p behind the lens. By rotational symmetry this is a x + b p, where a and b are polynomials of x.x, p.p and x.p, of degree
-1 here. In p, the circle of a film point is then an ellipse that is deformed by aberrations and moves with the field
+p behind the lens. By rotational symmetry this is a x + b p, where a and b are polynomials of x.x, p.p and x.p, here of
+degree 1. In p, the circle of a film point is then an ellipse that is deformed by aberrations and moves with the field
 (intersections of ellipses by field: Goossens et al. 2022). The coefficients are found by logistic regression: a ray
 passes with the probability prod_k sigma((1 - |q_k|) / t), with the points q_k and a width t that decreases.
 """
