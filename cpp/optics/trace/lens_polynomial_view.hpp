@@ -59,8 +59,7 @@ struct LensPolynomialArguments {
     REALCAM_INLINE Vec2<T> vector(T a, T b) const { return {a * x.x + b * p.x, a * x.y + b * p.y}; }
 };
 
-/// Returns the ray through the points `film` of the film and `last` of the plane of the last vertex, mm. Rims are not
-/// tested.
+/// Returns the ray through a point of the film and one of the plane of the last vertex. Rims are not tested.
 template <class T>
 REALCAM_INLINE LensPolynomialRay<T> evaluate(const LensPolynomialView& lens, const LensPolynomialArguments<T>& at) {
     constexpr int kSums = 2 * LensPolynomialView::kVectors;

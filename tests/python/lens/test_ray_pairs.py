@@ -108,7 +108,7 @@ def test_projection_is_that_of_the_lens(lens: rc.Lens, fitted: rc.RayPairLens) -
 
 
 def test_layers_are_those_of_the_lens(lens: rc.Lens, fitted: rc.RayPairLens) -> None:
-    scene = rc.Scene.load("tests/python/none") if False else wall()
+    scene = wall()
     view = {"film": rc.Film(36, 24, (30, 20))}
     depths = [
         rc.render(scene, camera, spp=1, layers="depth", device="cpu").layers["depth"]
@@ -162,8 +162,8 @@ def test_ideal_lens() -> None:
 
 
 def fisheye_rays(count: int, focal_mm: float, radius_mm: float) -> dict[str, Any]:
-    """Rays of an ideal equidistant fisheye, theta = r / f: each film point sends a parallel bundle through a disc across
-    it about one point, the centre of projection, which is the disc's image in the plane behind the lens."""
+    """Rays of an ideal equidistant fisheye, theta = r / f. Each film point sends a parallel bundle through a disc that is
+    perpendicular to it, about the centre of projection; its points are those of the plane behind the lens."""
     random = np.random.default_rng(2)
     angle, turn = np.radians(100) * np.sqrt(random.random(count)), 2 * np.pi * random.random(count)
     film = focal_mm * (angle * [np.cos(turn), np.sin(turn)]).T
@@ -200,7 +200,7 @@ def test_fields_beyond_90_degrees() -> None:
     assert found.fit_report.passing_accuracy >= 0.995
     camera = found.camera(film=rc.Film(20, 15, (200, 150)))
     pixels = np.array([[100.0, 75.0], [150, 75], [199, 75]])
-    origins, directions = camera.ray(pixels)
+    _, directions = camera.ray(pixels)
     expected = (pixels[:, 0] - 100) * 0.1 / 10  # theta = r / f
     np.testing.assert_allclose(np.arctan2(directions[:, 0], -directions[:, 2]), expected, atol=1e-4)
     assert camera.field_of_view_deg.horizontal == pytest.approx(np.degrees(2), rel=1e-4)
