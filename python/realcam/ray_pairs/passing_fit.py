@@ -20,8 +20,8 @@ Booleans = NDArray[np.bool_]
 
 DISCS = 3  # the stop, and the rims on both sides of it that vignette most
 _MOST_START_RAYS = 6000
-# Widths t of the search for good starts, of which neither is better for all lenses, and of the last steps with all
-# rays. Narrower ones follow single rays: of a fisheye's 4800, 0.001 decides 4% of others wrongly.
+# Widths t: two sequences for the search for good starts, because each is better for some lenses, and that of the last
+# steps with all rays. Narrower ones follow single rays: of a fisheye's 4800, 0.001 decides 4% of others wrongly.
 _WIDTHS = ((0.05, 0.02, 0.006), (0.1, 0.05, 0.02, 0.01))
 _LAST_WIDTHS = (0.02, 0.006)
 _TRIED = 2
@@ -83,7 +83,7 @@ def inside(discs: Array, x: Array, p: Array) -> Booleans:
 
 
 class _Rays:
-    """Rays, with the vectors of which the points of the circles are combinations."""
+    """Rays, with the vectors whose linear combinations are the points of the circles."""
 
     def __init__(self, x: Array, p: Array, ok: Booleans, terms: int) -> None:
         scalars = monomials(x, p, 1)[:, :terms]
