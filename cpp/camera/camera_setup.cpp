@@ -83,10 +83,10 @@ PupilTracer ray_pair_tracer(const Camera& camera, PupilTracer tracer) {
         for (int i = 0; i < PupilTracer::kBlock; ++i) {
             const Vec3f film = rays.origin[i], direction = rays.direction[i];
             const float along = distance / direction.z;
-            const Vec2f point = disc_point(
-                view, 0,
-                LensPolynomialArguments<float>(view, {film.x, film.y},
-                                               {film.x - along * direction.x, film.y - along * direction.y}));
+            const Vec2f point =
+                disc_point(view, 0,
+                           LensPolynomialArguments<float>(
+                               view, {film.x, film.y}, {film.x - along * direction.x, film.y - along * direction.y}));
             rays.origin.set(i, {stop_radius * point.x, stop_radius * point.y, 0});
         }
     };
@@ -260,8 +260,8 @@ void CameraSetup::set_times(CameraView& view, bool scene_moves) const {
 
 bool CameraSetup::has_lens_and_film_of(const Camera& camera) const {
     return camera_.lens == camera.lens && camera_.ray_pairs == camera.ray_pairs &&
-           camera_.film.width_mm == camera.film.width_mm &&
-           camera_.film.height_mm == camera.film.height_mm && camera_.film.shift_mm == camera.film.shift_mm;
+           camera_.film.width_mm == camera.film.width_mm && camera_.film.height_mm == camera.film.height_mm &&
+           camera_.film.shift_mm == camera.film.shift_mm;
 }
 
 bool CameraSetup::has_pupil_for(const std::vector<double>& wavelengths, PupilSampling sampling) const {

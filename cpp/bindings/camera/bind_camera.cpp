@@ -219,9 +219,19 @@ std::shared_ptr<RayPairTable> make_ray_pairs(const std::string& name, double wav
                                              const InputArray<float>& coefficients,
                                              const std::optional<InputArray<float>>& heights,
                                              const InputArray<float>& discs) {
-    RayPairTable table{name,           wavelength_nm,  length_mm,      film_distance_mm, film_mm.first,
-                       film_mm.second, film_radius_mm, last_radius_mm, plane_mm,         degree,
-                       {},             {},             {}};
+    RayPairTable table{name,
+                       wavelength_nm,
+                       length_mm,
+                       film_distance_mm,
+                       film_mm.first,
+                       film_mm.second,
+                       film_radius_mm,
+                       last_radius_mm,
+                       plane_mm,
+                       degree,
+                       {},
+                       {},
+                       {}};
     require_shape(coefficients, 3, 2, "coefficients");
     table.coefficients = elements<float, 1>(coefficients);
     if (heights) {

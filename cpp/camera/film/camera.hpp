@@ -78,8 +78,8 @@ struct Camera {
     Shutter shutter;
     std::vector<PoseKey> motion;  ///< keyframes in increasing order of time; empty: the camera does not move
     std::shared_ptr<const CalibratedGeometry> geometry = nullptr;  ///< that of a calibration; null: the lens's own
-    /// Rays of the model polynomial_lens if they were fitted to ray pairs, with `lens` = paraxial_lens(*ray_pairs); null:
-    /// they are fitted to the rays of `lens`.
+    /// Rays of the model polynomial_lens if they were fitted to ray pairs, with `lens` = paraxial_lens(*ray_pairs);
+    /// null: they are fitted to the rays of `lens`.
     std::shared_ptr<const RayPairTable> ray_pairs = nullptr;
 
     bool moves() const { return !motion.empty(); }

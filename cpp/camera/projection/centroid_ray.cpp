@@ -36,7 +36,8 @@ FilmBundle CentroidRays::bundle(const PupilView& pupil, double film_radius) cons
     const PupilLookup row(pupil, static_cast<float>(film_radius), 0);
     const EntryRectangle in = {{0, static_cast<double>(row.box.centre_l)},
                                {static_cast<double>(row.box.half_height), static_cast<double>(row.box.half_width)}};
-    return FilmBundle(to_scene_, film_, {0, film_radius}, in, true, polynomial_.disc_count > 0 ? &polynomial_ : nullptr);
+    return FilmBundle(to_scene_, film_, {0, film_radius}, in, true,
+                      polynomial_.disc_count > 0 ? &polynomial_ : nullptr);
 }
 
 FilmBundle CentroidRays::bundle(const PupilGridView& pupil, Vec2<double> film) const {
@@ -73,8 +74,8 @@ std::optional<CentroidRay> CentroidRays::centroid_ray(const FilmBundle& bundle) 
     if (bundle.mirrored) slope.x = position.x = 0;
     const Vec3d direction = towards + across.at(slope);
     const SceneRay ray = {across.at(position) + start * direction, normalized(direction)};
-    return CentroidRay{ray, polynomial_.disc_count > 0 ? bundle.film_point() : centroid_on_film(ray, rays, bundle.mirrored),
-                       area};
+    return CentroidRay{
+        ray, polynomial_.disc_count > 0 ? bundle.film_point() : centroid_on_film(ray, rays, bundle.mirrored), area};
 }
 
 double CentroidRays::irradiance_of(const FilmBundle& bundle) {

@@ -65,8 +65,7 @@ double RayPairTable::field_angle(double film_height) const {
     const auto at = [&](double last) { return LensPolynomialArguments<double>(view, {x, 0}, {last, 0}); };
     // Fixed-point iteration: pupil aberrations are a small part of the stop's size.
     double last = chief_slope(*this) * x;
-    for (int i = 0; i < 20; ++i)
-        last -= disc_point(view, 0, at(last)).x * last_radius / static_cast<double>(discs[1]);
+    for (int i = 0; i < 20; ++i) last -= disc_point(view, 0, at(last)).x * last_radius / static_cast<double>(discs[1]);
     if (!(std::fabs(last) <= last_radius)) last = std::clamp(chief_slope(*this) * x, -last_radius, last_radius);
     const Vec3d direction = evaluate(view, at(last)).direction;
     return std::atan2(std::fabs(direction.x), -direction.z);

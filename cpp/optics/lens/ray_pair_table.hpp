@@ -11,8 +11,8 @@ namespace REALCAM_NAMESPACE {
 /// f-number. Second source of a LensPolynomialView, beside LensPolynomial.
 ///
 /// The lens is in air and rotationally symmetric. Its frame is that of a prescription: the front vertex is the point of
-/// the axis at z = 0, and the last vertex that at z = `length`; any planes between the glass and the entrance pupil, and
-/// between the exit pupil and the film, serve. Lengths in mm.
+/// the axis at z = 0, and the last vertex that at z = `length`; any planes between the glass and the entrance pupil,
+/// and between the exit pupil and the film, serve. Lengths in mm.
 struct RayPairTable {
     std::string name;
     double wavelength_nm = 0;

@@ -21,7 +21,7 @@ struct LensPolynomialView {
     float last_radius_squared, last_rim;  ///< last surface: squared radius of the rim, mm^2, and sag there, mm
     float front_radius_squared, front_rim;  ///< the same for the first surface
 
-    // Of ray pairs alone (RayPairTable), whose rims are unknown:
+    // The following members are used only for ray pairs (RayPairTable), whose rims are unknown.
     /// Coefficients of two scalars for each monomial, array of shape (terms, 2): z of the position, and z of a
     /// direction of any length. Null: positions lie in `plane`, and directions are unit vectors with z < 0.
     const float* heights;
@@ -37,7 +37,8 @@ struct LensPolynomialView {
 /// Ray in front of the lens, towards the scene, and its point in the stop.
 template <class T>
 struct LensPolynomialRay {
-    Vec3<T> position;  ///< mm from the front vertex; in the plane z = LensPolynomialView::plane unless there are heights
+    Vec3<T>
+        position;  ///< mm from the front vertex; in the plane z = LensPolynomialView::plane unless there are heights
     Vec3<T> direction;  ///< unit vector; z is 0 if the polynomials give no direction
     Vec2<T> at_stop;  ///< in units of the radius of the stop; 0 for ray pairs
 };
@@ -59,8 +60,7 @@ struct LensPolynomialArguments {
     REALCAM_INLINE Vec2<T> vector(T a, T b) const { return {a * x.x + b * p.x, a * x.y + b * p.y}; }
 };
 
-/// Returns the ray through the points `film` of the film and `last` of the plane of the last vertex, mm. Rims are not
-/// tested.
+/// Returns the ray through a point of the film and one of the plane of the last vertex. Rims are not tested.
 template <class T>
 REALCAM_INLINE LensPolynomialRay<T> evaluate(const LensPolynomialView& lens, const LensPolynomialArguments<T>& at) {
     constexpr int kSums = 2 * LensPolynomialView::kVectors;
@@ -128,9 +128,9 @@ REALCAM_HD inline void trace_polynomial(const LensPolynomialView& lens, T film_d
             }
         } else {
             const T to_front = (static_cast<T>(lens.front_rim) - ray.position.z) / ray.direction.z;
-            passes &= (ray.direction.z < 0) & (squared(ray.position.x + to_front * ray.direction.x,
-                                                       ray.position.y + to_front * ray.direction.y) <=
-                                               front_radius_squared);
+            passes &=
+                (ray.direction.z < 0) & (squared(ray.position.x + to_front * ray.direction.x,
+                                                 ray.position.y + to_front * ray.direction.y) <= front_radius_squared);
         }
         rays.origin.set(i, ray.position);
         rays.direction.set(i, ray.direction);

@@ -10,7 +10,17 @@ import typer
 
 from .._core import InputError
 from ..json_values import json_text
-from . import lens_figures, lens_image, lens_list, lens_options, lens_plots, lens_tolerance, optimise, options
+from . import (
+    lens_figures,
+    lens_image,
+    lens_list,
+    lens_options,
+    lens_plots,
+    lens_rays,
+    lens_tolerance,
+    optimise,
+    options,
+)
 from .commands_in_cpp import add_command_in_cpp
 from .completions import completion_of
 from .grouped_options import grouped
@@ -32,6 +42,8 @@ lens_plots.register(app)
 app.command("optimise")(optimise.optimise)
 app.command("tolerance")(lens_tolerance.tolerance)
 app.command("image")(lens_image.image)
+app.command("rays")(lens_rays.rays)
+app.command("fit")(lens_rays.fit)
 
 
 @app.command("draw")

@@ -58,9 +58,7 @@ class RayPolynomials:
 def monomials(x: Array, p: Array, degree: int) -> Array:
     """Returns (x.x)^i (p.p)^j (x.p)^k with i + j + k <= degree for N points, (N, terms): i changes slowest."""
     u, v, w = (x * x).sum(1), (p * p).sum(1), (x * p).sum(1)
-    exponents = [
-        (i, j, k) for i in range(degree + 1) for j in range(degree + 1 - i) for k in range(degree + 1 - i - j)
-    ]
+    exponents = [(i, j, k) for i in range(degree + 1) for j in range(degree + 1 - i) for k in range(degree + 1 - i - j)]
     return np.column_stack([u**i * v**j * w**k for i, j, k in exponents])
 
 

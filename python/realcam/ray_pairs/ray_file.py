@@ -101,7 +101,8 @@ def _checked(where: str, arrays: Mapping[str, np.ndarray], meta: Mapping[str, An
         raise InputError(f"{where}: object_direction must be unit vectors")
     if not ((found["wavelength_nm"] >= 100) & (found["wavelength_nm"] <= 20000)).all():
         raise InputError(f"{where}: wavelength_nm must lie between 100 and 20000")
-    film_z, side_z = (_number(where, meta, key, -_LONGEST_MM) for key in ("film_plane_z_mm", "film_side_reference_z_mm"))
+    planes = ("film_plane_z_mm", "film_side_reference_z_mm")
+    film_z, side_z = (_number(where, meta, key, -_LONGEST_MM) for key in planes)
     if not film_z > side_z:
         raise InputError(f"{where}: film_plane_z_mm must be larger than film_side_reference_z_mm")
     size = meta.get("film_size_mm")

@@ -26,6 +26,7 @@ _LEAST_PASSING = 200
 _WORTHWHILE = 0.8  # factor by which the error of a higher degree must be smaller
 _WIDE_COSINE = -0.5  # of rays to the axis: beyond 60 degrees a plane is a bad reference of positions
 _LEAST_CHIEF_SLOPE = 0.1  # height of the chief ray in the plane behind the lens, per height on the film
+_FAR = 100  # times the length of the lens: an entrance pupil beyond counts as one at infinity
 _FIELD_MARGIN = 1.002  # the light may end that much beyond the outermost ray that passes
 _EDGE = 0.99  # of the measured disc; if rays beyond pass, the disc may not have covered the light
 
@@ -48,7 +49,7 @@ class RayPairFit:
 
 @dataclass(frozen=True, eq=False)
 class RayPairLens:
-    """A lens that is known by rays alone, as of a confidential design: a map from rays at the film to rays in the scene.
+    """A lens that is known by rays alone, as of a confidential design: a map from rays at the film to the scene.
 
     It holds for the f-number, focus and zoom position of its rays; another stop needs rays and a fit of its own. What
     needs surfaces does not work with it: ghosts, diffraction, coatings, dispersion within one picture, the planner.
@@ -281,17 +282,19 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
     origin, direction = pairs.object_origin_mm, pairs.object_direction
 
     def fit(position: Array, degree: int, is_wide: bool) -> RayPolynomials:
-        return fitted(
-            x[train], p[train], variable[train], powers, position, direction[train], degree, is_wide=is_wide
-        )
+        return fitted(x[train], p[train], variable[train], powers, position, direction[train], degree, is_wide=is_wide)
 
     # The paraxial entrance pupil, from the chief ray of a film point near the axis. In its plane, or on a sphere about
     # it, rays are near the axis at every field.
     is_wide = bool(direction[ok, 2].max() > _WIDE_COSINE)
-    film_side_z = float(np.median(origin[ok, 2]))
-    first = evaluated(fit(_at_plane(origin[train], direction[train], film_side_z), 2, False), *_chief(discs), np.zeros(1))
-    pupil_z = film_side_z - float(first[0][0, 0] / first[1][0, 0]) * -first[1][0, 2]
-    radius = max(abs(pupil_z - film_side_z), 1.2 * _largest_distance(origin[ok], direction[ok], pupil_z))
+    object_z = float(np.median(origin[ok, 2]))
+    near_axis = fit(_at_plane(origin[train], direction[train], object_z), 2, False)
+    position, towards = (values[0] for values in evaluated(near_axis, *_chief(discs), np.zeros(1)))
+    with np.errstate(divide="ignore"):
+        pupil_z = float(object_z - position[0] * towards[2] / towards[0])
+    if not abs(pupil_z - object_z) < _FAR * (pairs.film_z_mm - object_z):
+        pupil_z = object_z
+    radius = max(abs(pupil_z - object_z), 1.2 * _largest_distance(origin[ok], direction[ok], pupil_z))
 
     def position_of(rays: Booleans) -> Array:
         if is_wide:
@@ -317,7 +320,7 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
             UserWarning,
             stacklevel=3,
         )
-    front_z = min(film_side_z, pupil_z - 0.1 * abs(last_z - film_side_z))
+    front_z = min(object_z, pupil_z - 0.1 * abs(last_z - object_z))
     report = RayPairFit(
         degree=2 * best.degree + 1,
         rays=len(ok),
@@ -362,7 +365,7 @@ def _plane_behind(pairs: RayPairs) -> tuple[float, Array]:
     near = ok & (radius < 0.3 * radius[ok].max())
     near = near if near.any() else ok
     slope = float((pairs.film_mm[near] * pairs.film_side_mm[near]).sum() / (pairs.film_mm[near] ** 2).sum())
-    share = max((_LEAST_CHIEF_SLOPE - slope) / (1 - slope), 0.0) if slope < 0.5 * _LEAST_CHIEF_SLOPE else 0.0
+    share = (_LEAST_CHIEF_SLOPE - slope) / (1 - slope) if slope < 0.5 * _LEAST_CHIEF_SLOPE else 0.0
     points = pairs.film_side_mm + share * (pairs.film_mm - pairs.film_side_mm)
     return pairs.film_side_z_mm + share * (pairs.film_z_mm - pairs.film_side_z_mm), points
 

@@ -1,0 +1,69 @@
+"""The commands `realcam lens rays` and `realcam lens fit`: rays of a lens, and a lens fitted to rays."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..json_values import json_text
+from . import lens_options, options
+from .grouped_options import grouped
+
+
+@grouped
+def rays(
+    name: lens_options.LensName,
+    *,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="The .npz file to write")],
+    rings: lens_options.Rings,
+    count: Annotated[int, typer.Option("--rays", metavar="N", help="Number of rays, blocked ones among them")] = 20000,
+    wavelengths: Annotated[
+        str | None,
+        typer.Option("--wavelengths", metavar="NM,NM,...", help="Wavelengths of the rays [the design wavelength]"),
+    ] = None,
+    file: lens_options.File,
+    quiet: options.Quiet = False,
+) -> None:
+    """Write rays behind and before a lens, from which lens fit makes a lens without its surfaces."""
+    from ..ray_pairs import save_rays
+
+    lens = rings.set(file.lens(name))
+    lens_options.check_not_the_lens(output, name)
+    save_rays(lens, output, rays=count, wavelengths_nm=lens_options.numbers(wavelengths, "--wavelengths"))
+    options.say_written(output, quiet)
+
+
+def fit(
+    rays: Annotated[Path, typer.Argument(help="An .npz file of the format ray-pairs/1", metavar="RAYS")],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="The .npz file to write")],
+    as_json: options.AsJson = False,
+    quiet: options.Quiet = False,
+) -> None:
+    """Fit a lens to rays before and behind it, and print its errors on rays to which nothing was fitted."""
+    from .._core import InputError
+    from ..ray_pairs import RayPairLens
+
+    if output.resolve() == rays.resolve():
+        raise InputError(f"{output}: is the file of the rays; choose another")
+    lens = RayPairLens.fit(rays)
+    lens.save(output)
+    report = lens.fit_report
+    if as_json:
+        typer.echo(json_text(asdict(report)))
+        return
+    if not quiet:
+        for what, value in {
+            "rays": f"{report.rays} at f/{lens.f_number:.4g}",
+            "polynomials": f"degree {report.degree}",
+            "direction": f"{1e6 * report.direction_rms_rad:.3g} microradians rms, "
+            f"{1e6 * report.direction_worst_rad:.3g} at worst",
+            "position": f"{1e3 * report.distance_rms_mm:.3g} um rms",
+            "passing": f"{100 * report.passing_accuracy:.2f}% of the rays decided rightly",
+            "measured": f"film points up to {report.film_radius_mm:.4g} mm, with light up to "
+            f"{report.light_radius_mm:.4g} mm; angles up to {report.largest_angle_deg:.4g} degrees",
+        }.items():
+            typer.echo(f"{what:12} {value}")
+    options.say_written(output, quiet)
