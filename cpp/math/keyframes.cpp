@@ -25,7 +25,7 @@ KeyPosition key_position(double time, const std::vector<double>& times) {
     return {first, (time - times[first]) / seconds, seconds};
 }
 
-/// Writes the weighted sum of four vectors of VectorKeys::values, the first of which has the index `first`.
+/// Writes the weighted sum of four consecutive vectors of VectorKeys::values. `first`: index of the first vector.
 void add_vectors(const VectorKeys& keys, std::size_t first, const double (&weights)[4], double* out) {
     const float* values = keys.values.data() + first * keys.components;
     for (std::size_t c = 0; c < keys.components; ++c) {

@@ -146,7 +146,7 @@ public:
         add(coded, indices.size(), 2, are_triangles ? "TRIANGLES" : "INDICES", "NONE");
     }
 
-    std::string bytes;  ///< of the compressed buffer
+    std::string bytes;  ///< bytes of the compressed buffer
     std::string views;  ///< JSON of the bufferViews
 
     /// JSON of the compressed buffer, and of the declared one of the uncompressed bytes.

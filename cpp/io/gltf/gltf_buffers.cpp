@@ -58,11 +58,14 @@ std::string_view GltfBuffers::view(const Json& reference, const std::string& whe
         const Json& buffer = buffers[view["buffer"].index(buffers.size())];
         // There may be uncompressed bytes beside the compressed ones; otherwise the buffer is only declared.
         const bool has_uncompressed = !buffer["uri"].is_null() || buffer["extensions"][extension].is_null();
-        if (!missing_library(extension).empty() && has_uncompressed) continue;
+        const bool is_missing = !missing_library(extension).empty();
+        if (is_missing && has_uncompressed) continue;
         auto found = decoded_.find(*index);
-        if (found == decoded_.end())
-            found = decoded_.emplace(*index, decode_meshopt(document_, compression, slice(compression, label), label))
-                        .first;
+        if (found == decoded_.end()) {
+            // Without the library, decoding fails and names it.
+            const std::string_view encoded = is_missing ? std::string_view() : slice(compression, label);
+            found = decoded_.emplace(*index, decode_meshopt(document_, compression, encoded, label)).first;
+        }
         return found->second;
     }
     return slice(view, label);

@@ -38,7 +38,7 @@ public:
 
 private:
     bool DecodeAllAttributes() override {
-        // Of each component, the value as it is coded, its prediction and the final value.
+        // A component is stored as coded, as predicted and in its final form.
         constexpr std::size_t kBytesPerComponent = 16;
         const std::size_t components = components_of(*this->point_cloud());
         refusal_ = components > kMaxDracoComponents

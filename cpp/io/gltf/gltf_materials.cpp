@@ -202,9 +202,11 @@ private:
     /// checker pattern with a warning.
     std::int32_t picture_of(const Json& texture) {
         const Json& found = root_["textures"][texture.index(root_["textures"].size())];
-        const Json& source =
-            found["source"].is_null() ? found["extensions"]["EXT_texture_webp"]["source"] : found["source"];
-        const std::size_t images = root_["images"].size(), image = source.index(images);
+        // A KTX2 picture cannot be decoded; the warning about it names it.
+        const Json* source = &found["source"];
+        for (const char* extension : {"EXT_texture_webp", "KHR_texture_basisu"})
+            if (source->is_null()) source = &found["extensions"][extension]["source"];
+        const std::size_t images = root_["images"].size(), image = source->index(images);
         if (image < images) return first_alike(image);
         if (missing_ < 0) {
             missing_ = static_cast<std::int32_t>(scene_.pictures.size());

@@ -14,7 +14,7 @@ namespace realcam::io {
 namespace {
 
 /// Modes of primitives in glTF; those below kFirstOfTriangles are points and lines.
-enum Mode : std::size_t { kFirstOfTriangles = 4, kTriangles = 4, kStrip = 5, kFan = 6 };
+enum Mode : std::size_t { kFirstOfTriangles = 4, kTriangles = kGltfTriangles, kStrip = 5, kFan = 6 };
 
 constexpr std::size_t kBytesPerVertex = sizeof(Vec3d) + sizeof(Vec3f) + sizeof(Vec2f);
 
@@ -62,15 +62,6 @@ std::uint32_t GltfMeshes::material_of(const Json& primitive, const std::string& 
     return *default_material_;
 }
 
-bool GltfMeshes::has_uncompressed(const Primitive& primitive) const {
-    const Json& accessors = document_.root()["accessors"];
-    for (const Json* reference : {&primitive.json["attributes"]["POSITION"], &primitive.json["indices"]}) {
-        const Json& accessor = accessors[reference->index(accessors.size())];
-        if (!accessor.is_null() && accessor["bufferView"].is_null() && accessor["sparse"].is_null()) return false;
-    }
-    return true;
-}
-
 std::vector<std::string> GltfMeshes::attribute_names(const Primitive& primitive) const {
     std::vector<std::string> names = {"POSITION", "NORMAL", "COLOR_0"};
     for (const std::uint32_t set : scene_.materials[primitive.material].uv_sets())
@@ -80,45 +71,9 @@ std::vector<std::string> GltfMeshes::attribute_names(const Primitive& primitive)
     return names;
 }
 
-void GltfMeshes::decode(const Primitive& primitive) {
-    accessors_.set_decoded({});
-    const Json& draco = primitive.json["extensions"][kDraco];
-    if (draco.is_null() || (!missing_library(kDraco).empty() && has_uncompressed(primitive))) return;
-    const Json &list = document_.root()["accessors"], &attributes = primitive.json["attributes"];
-    const auto find = [&](const Json& reference, const std::string& name) {
-        const auto index = document_.find("accessors", reference, primitive.label + ": " + name);
-        if (!index) document_.fail(primitive.label + ": has no " + name + ", which a Draco mesh needs");
-        return *index;
-    };
-    if (primitive.json["mode"].index(kTriangles) != kTriangles)
-        document_.fail(primitive.label + ": a Draco mesh must have the mode 4, triangles");
-    const std::size_t indices = find(primitive.json["indices"], "indices");
-    const DracoSize size{list[find(attributes["POSITION"], "POSITION")]["count"].index(0),
-                         list[indices]["count"].index(0) / 3};
-    std::vector<DracoAttribute> requests;
-    std::vector<std::size_t> accessors;
-    for (const std::string& name : attribute_names(primitive)) {
-        const Json& id = draco["attributes"][name];
-        if (id.is_null()) continue;
-        accessors.push_back(find(attributes[name], name));
-        const Json& accessor = list[accessors.back()];
-        requests.push_back({id.index(0), accessor["componentType"].index(0), components_of(accessor["type"].text())});
-    }
-    const std::string label = primitive.label + ": its compressed mesh";
-    DracoMesh mesh =
-        decode_draco(document_, buffers_.view(draco["bufferView"], label), size, requests, primitive.label);
-    checkpoint_.pass(size.vertices + size.triangles);
-    DecodedAccessors decoded;
-    decoded[indices] = {
-        std::string(reinterpret_cast<const char*>(mesh.indices.data()), mesh.indices.size() * sizeof(std::uint32_t)),
-        kGltfUnsignedInt};
-    for (std::size_t i = 0; i < requests.size(); ++i)
-        decoded[accessors[i]] = {std::move(mesh.attributes[i]), requests[i].component_type};
-    accessors_.set_decoded(std::move(decoded));
-}
-
 void GltfMeshes::add_primitive(const Primitive& primitive) {
-    decode(primitive);
+    accessors_.set_decoded(
+        decode_primitive(document_, buffers_, primitive.json, attribute_names(primitive), primitive.label));
     FileMesh mesh;
     mesh.label = primitive.label;
     mesh.vertices = vertices_of(primitive);

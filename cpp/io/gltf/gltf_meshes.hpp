@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../scene/file_scene.hpp"
-#include "gltf_compression.hpp"
+#include "gltf_draco_primitive.hpp"
 #include "gltf_skins.hpp"
 
 namespace realcam::io {
@@ -23,7 +23,7 @@ struct GltfShape {
 
     bool moves() const { return moving_joints > 0 || moving_targets > 0; }
     bool is_skinned() const { return joints.has_value() || moving_joints > 0; }
-    /// True if the mesh of the file is used as it is.
+    /// True if the mesh of the file is used without a change.
     bool is_plain() const { return target_weights.empty() && !joints && !moves(); }
 };
 
@@ -65,11 +65,6 @@ private:
     };
 
     void add_primitive(const Primitive& primitive);
-    /// Decodes a primitive of KHR_draco_mesh_compression, so that its accessors have their elements. Without the
-    /// library, an uncompressed form is used; throws SceneFileError if there is none.
-    void decode(const Primitive& primitive);
-    /// True if positions and indices of a primitive have uncompressed bytes.
-    bool has_uncompressed(const Primitive& primitive) const;
     /// Returns the names of the attributes that are read of a primitive.
     std::vector<std::string> attribute_names(const Primitive& primitive) const;
     /// Returns the index of a primitive's material; a default material is added on first use.

@@ -334,7 +334,7 @@ private:
     Assembly scene_;
     Camera camera_;
     RenderSettings settings_;
-    Shapes shapes_;  ///< of the deforming objects of the last scene, at shapes_time_s_
+    Shapes shapes_;  ///< shapes of the deforming objects of the last scene, at shapes_time_s_
     double shapes_time_s_ = 0;
     std::int64_t samples_ = 0;  ///< samples of the pixel that has most: position in the random sequence
     std::int64_t mean_samples_ = 0;  ///< samples per pixel, as a mean over all pixels, rounded up

@@ -169,3 +169,35 @@ TEST_CASE("glTF: bufferViews of EXT_meshopt_compression that are wrong are refus
 }
 
 #endif
+
+#if !REALCAM_HAS_DRACO || !REALCAM_HAS_MESHOPT
+
+TEST_CASE(
+    "glTF: without the library of a codec, uncompressed data are read, and the library is named if there are none") {
+    const Folder folder;
+    folder.write("tri.bin", triangle_bytes());
+    const std::string plain = gltf(R"([{"mesh":0}])", "[0]");
+    if (!REALCAM_HAS_DRACO) {
+        const std::string both = replaced(
+            plain, R"("indices":3,"material":0)",
+            R"("indices":3,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}})");
+        CHECK(read(folder.write("d.gltf", both)).triangles.size() == 1);
+        for (const std::string accessor :
+             {R"("bufferView":0,"componentType":5126,)", R"("bufferView":3,"componentType":5123,)"})
+            CHECK(
+                has(error_of(folder.write("d.gltf", replaced(both, accessor, accessor.substr(15)))),
+                    "its triangles are in the glTF extension KHR_draco_mesh_compression, which needs libdraco, without "
+                    "which this realcam was built; export it without compression"));
+    }
+    if (!REALCAM_HAS_MESHOPT) {
+        const std::string both = replaced(
+            plain, R"("bufferViews":[{"buffer":0,"byteLength":36)",
+            R"("bufferViews":[{"buffer":0,"byteLength":36,"extensions":{"EXT_meshopt_compression":{"buffer":0}})");
+        CHECK(read(folder.write("m.gltf", both)).triangles.size() == 1);
+        const std::string alone =
+            replaced(both, R"(,"uri":"tri.bin")", R"(,"extensions":{"EXT_meshopt_compression":{"fallback":true}})");
+        CHECK(has(error_of(folder.write("m.gltf", alone)), "meshoptimizer, without which this realcam was built"));
+    }
+}
+
+#endif

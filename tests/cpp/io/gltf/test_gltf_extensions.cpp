@@ -151,13 +151,41 @@ TEST_CASE("glTF: what is said of extensions that are required and not read") {
         return error_of(
             folder.write("r.gltf", gltf(R"([{"mesh":0}])", "[0]", R"(,"extensionsRequired":[")" + name + R"("])")));
     };
-    CHECK(has(said("KHR_texture_basisu"),
-              "needs the glTF extension KHR_texture_basisu, which is not read; export its KTX2 pictures as PNG, JPEG or "
-              "WebP"));
+    CHECK(
+        has(said("KHR_texture_basisu"),
+            "needs the glTF extension KHR_texture_basisu, which is not read; export its KTX2 pictures as PNG, JPEG or "
+            "WebP"));
     CHECK(has(said("EXT_texture_avif"), "export its pictures as PNG or JPEG"));
     for (const std::string name : {"KHR_technique_webgl", "CESIUM_RTC", "VENDOR_something"}) {
         CHECK(has(said(name), name + ", which is not read; export it without that extension"));
         CHECK_FALSE(has(said(name), "compression"));
     }
     CHECK(said("EXT_mesh_gpu_instancing") == "no error");
+}
+
+TEST_CASE("glTF: a KTX2 picture without another format beside it is named, and a checker stands in") {
+    const Folder folder;
+    folder.write("tri.bin", triangle_bytes());
+    folder.write("wood.ktx2", "\xabKTX 20\xbb");
+    const auto material = [&](const std::string& texture) {
+        return folder.write(
+            "k.gltf",
+            gltf(R"([{"mesh":0}])", "[0]",
+                 R"(,"extensionsUsed":["KHR_texture_basisu"],"images":[{"uri":"wood.ktx2"},{"uri":"wood.png"}],
+                              "textures":[{)" +
+                     texture + R"("extensions":{"KHR_texture_basisu":{"source":0}}}],
+                              "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])"));
+    };
+    const auto scene_of = [&](const std::string& path) {
+        return *io::read_scene(path, {}, [](const std::string& file, std::span<const std::uint8_t>) {
+                    return file.ends_with(".png") ? std::optional(DecodedImage{1, 1, std::vector<std::uint8_t>(4)})
+                                                  : std::nullopt;
+                }).static_geometry;
+    };
+    const Scene scene = scene_of(material(""));
+    CHECK(warns(scene, "wood.ktx2"));
+    CHECK(warns(scene, "cannot be read as a picture; a checker in magenta and black stands in"));
+    CHECK(warns(scene, "the extension KHR_texture_basisu is not modelled"));
+    folder.write("wood.png", "a picture");
+    CHECK_FALSE(warns(scene_of(material(R"("source":1,)")), "cannot be read"));
 }
