@@ -124,9 +124,19 @@ void TangentPath::Sums::clear() {
         for (double& sum : lanes) sum = 0;
 }
 
+inline void TangentPath::trace_surface(std::size_t k, Rays& rays, AdjointStep<kLanes>& step, Dual8* form_sums,
+                                       const WavelengthsInDouble* wavelengths) const {
+    if (wavelengths)
+        trace_tangents(surfaces_[k], WavelengthsInDouble{wavelengths->surfaces + k, wavelengths->variable}, rays, step,
+                       form_sums);
+    else
+        trace_tangents(surfaces_[k], OneWavelength{}, rays, step, form_sums);
+}
+
 // target_clones compiles only inlined code for each instruction set, hence `flatten`.
 __attribute__((flatten)) REALCAM_CLONES void TangentPath::trace(Rays& rays, Sums& sums, const int* starts,
-                                                                const Vec3d* rim_tangents) const {
+                                                                const Vec3d* rim_tangents,
+                                                                const WavelengthsInDouble* wavelengths) const {
     constexpr int N = kLanes;
     for (int i = 0; i < N; ++i) {
         if (!starts) {
@@ -139,7 +149,7 @@ __attribute__((flatten)) REALCAM_CLONES void TangentPath::trace(Rays& rays, Sums
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
         const TangentSurface& surface = surfaces_[k];
         AdjointStep<N>& step = sums.surfaces[k];
-        trace_tangents(surface, rays, step, sums.forms[k].data());
+        trace_surface(k, rays, step, sums.forms[k].data(), wavelengths);
         step.origin = rays.origin, step.direction = rays.direction;
         if (!starts) continue;
         for_surface_points(surface, rays.origin, sums.forms[k].data(), [&](const auto& point, int i) {
@@ -165,13 +175,14 @@ __attribute__((flatten)) REALCAM_CLONES void TangentPath::trace(Rays& rays, Sums
     }
 }
 
-__attribute__((flatten)) REALCAM_CLONES void TangentPath::record(Rays& rays, std::vector<Crossing>& crossings) const {
+__attribute__((flatten)) REALCAM_CLONES void TangentPath::record(Rays& rays, std::vector<Crossing>& crossings,
+                                                                 const WavelengthsInDouble* wavelengths) const {
     for (int i = 0; i < kLanes; ++i) rays.origin_tangent.set(i, {0, 0, 0});
     crossings.resize(surfaces_.size());
     AdjointStep<kLanes> unused{};
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
         std::vector<Dual8> forms(surfaces_[k].view.kind == SurfaceShape::freeform ? kLanes * duals_[k].size() : 0);
-        trace_tangents(surfaces_[k], rays, unused, forms.data());
+        trace_surface(k, rays, unused, forms.data(), wavelengths);
         crossings[k].origin = rays.origin, crossings[k].direction = rays.direction;
         crossings[k].origin_tangent = rays.origin_tangent;
     }

@@ -45,7 +45,7 @@ Vec3d film_motion(const LensSystem& lens, const LensVariable& v) {
 }
 
 struct Tangents {
-    CameraDerivatives by[2];  ///< of x and y on the film
+    CameraDerivatives by[2];  ///< derivatives of x and y on the film
     Vec3d origin, direction;  ///< ray in front of the lens, in the camera's frame, towards the scene
     std::vector<Vec3d> behind;  ///< directions behind each surface, in its frame
     std::vector<Vec3d> at;
