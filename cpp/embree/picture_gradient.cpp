@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <numbers>
@@ -513,23 +514,24 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
     const std::size_t numbers = number_count(), count = directions.size() / numbers;
     FilmRows film(*this, count);
     const Vec2d per_mm = pixels_per_mm();
-    /// Derivatives along the directions, from those by the numbers.
-    const auto along = [&](const CameraDerivatives& by, double by_stop, std::vector<double>& list,
-                           std::vector<double>& result) {
-        list.clear();
-        append_numbers(by, by_stop, list);
-        result.resize(count);
-        for (std::size_t k = 0; k < count; ++k)
-            result[k] = std::inner_product(list.begin(), list.end(),
-                                           directions.begin() + static_cast<std::ptrdiff_t>(k * numbers), 0.0);
-    };
+    std::vector<TangentPath::Coefficients> along;
+    std::vector<double> stop_rates;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double* direction = directions.data() + k * numbers;
+        const double* others = direction + path_.variable_count();
+        CameraDerivatives rates;
+        rates.by_variable.assign(direction, others);
+        std::copy(others, others + 6, rates.by_film.begin());
+        std::copy(others + 6, others + 12, rates.by_pose.begin());
+        along.push_back(path_.coefficients(rates));
+        stop_rates.push_back(others[12]);
+    }
     run(
         [&](int row_index) {
             Row row(*this, samples, row_index);
             auto& rows = film.rows_of(row_index);
             TangentPath::Sums sums(path_);
             RayBlock block;
-            std::vector<double> list, x[kRays], y;
             // Adds light times a factor of each pixel's filter to the derivative pictures.
             const auto add = [&](const SampleLight& sample, std::size_t k, auto&& factor) {
                 for_filtered_pixels(filter_, width(), height(), sample.pixel, [&](int pixel, float value, Vec2f slope) {
@@ -548,15 +550,17 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
                 sums.clear();
                 const WavelengthsInDouble many = wavelengths(block.variable);
                 path_.trace(block.rays, sums, nullptr, nullptr, if_dispersed(many));
-                for (int i = 0; i < block.count; ++i) along(path_.derivatives(sums, i), 0, list, x[i]);
+                // Motions of the film points along x and y, for each direction.
+                std::vector<std::array<double, kRays>> x(count), y(count);
+                for (std::size_t k = 0; k < count; ++k) TangentPath::add_along(along[k], sums, x[k]);
                 sums.clear();
                 path_.trace(other.rays, sums, nullptr, nullptr, if_dispersed(many));
-                for (int i = 0; i < block.count; ++i) {
-                    along(path_.derivatives(sums, i), 0, list, y);
-                    for (std::size_t k = 0; k < count; ++k)
+                for (std::size_t k = 0; k < count; ++k) {
+                    TangentPath::add_along(along[k], sums, y[k]);
+                    for (std::size_t i = 0; i < static_cast<std::size_t>(block.count); ++i)
                         add(block.lights[i], k, [&](double, Vec2f slope) {
-                            return scale * (per_mm.x * x[i][k] * static_cast<double>(slope.x) +
-                                            per_mm.y * y[k] * static_cast<double>(slope.y));
+                            return scale * (per_mm.x * x[k][i] * static_cast<double>(slope.x) +
+                                            per_mm.y * y[k][i] * static_cast<double>(slope.y));
                         });
                 }
                 block.count = 0;
@@ -581,10 +585,13 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
                     sums.clear();
                     const WavelengthsInDouble many = wavelengths(variable);
                     path_.trace(rays, sums, surfaces, tangents, if_dispersed(many));
-                    for (int i = 0; i < used; ++i) {
-                        along(path_.derivatives(sums, i), points[i]->stop_rate, list, y);
-                        for (std::size_t k = 0; k < count; ++k)
-                            add(lights[i], k, [&](double value, Vec2f) { return outline_scale * y[k] * value; });
+                    for (std::size_t k = 0; k < count; ++k) {
+                        std::array<double, kRays> speeds{};
+                        TangentPath::add_along(along[k], sums, speeds);
+                        for (std::size_t i = 0; i < static_cast<std::size_t>(used); ++i) {
+                            const double speed = speeds[i] + stop_rates[k] * points[i]->stop_rate;
+                            add(lights[i], k, [&](double value, Vec2f) { return outline_scale * speed * value; });
+                        }
                     }
                 });
         },

@@ -70,8 +70,11 @@ TangentPath::Rays OutlineRays::start(const DirectionLine (&lines)[kLanes], const
     return rays;
 }
 
-void OutlineRays::trace(const DirectionLine (&lines)[kLanes], const double (&t)[kLanes],
-                        const WavelengthsInDouble* wavelengths, int (&passes)[kLanes]) const {
+// target_clones compiles only inlined code for each instruction set, hence `flatten`.
+__attribute__((flatten)) REALCAM_CLONES void OutlineRays::trace(const DirectionLine (&lines)[kLanes],
+                                                                const double (&t)[kLanes],
+                                                                const WavelengthsInDouble* wavelengths,
+                                                                int (&passes)[kLanes]) const {
     TangentPath::Rays rays = start(lines, t);
     auto& without_tangents = static_cast<LensRays<double, kLanes>&>(rays);
     if (wavelengths)

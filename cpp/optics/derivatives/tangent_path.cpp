@@ -189,8 +189,8 @@ __attribute__((flatten)) REALCAM_CLONES void TangentPath::record(Rays& rays, std
     change_frame(exit_, static_cast<LensRays<double, kLanes>&>(rays));
 }
 
-template <class Lane>
-CameraDerivatives TangentPath::derivatives_of(const Sums& sums, const Lane& lane_sum) const {
+CameraDerivatives TangentPath::derivatives(const Sums& sums) const {
+    const auto lane_sum = [](const auto& lanes) { return std::accumulate(lanes, lanes + kLanes, 0.0); };
     CameraDerivatives result;
     result.by_variable.assign(variables_.size(), 0);
     const auto adjoints_of = [&](const AdjointStep<kLanes>& step, double* adjoints) {
@@ -220,12 +220,56 @@ CameraDerivatives TangentPath::derivatives_of(const Sums& sums, const Lane& lane
     return result;
 }
 
-CameraDerivatives TangentPath::derivatives(const Sums& sums, int lane) const {
-    return derivatives_of(sums, [lane](const auto& lanes) { return lanes[lane]; });
+template <class SomeSums, class F>
+void TangentPath::for_sums(SomeSums& sums, F&& f) {
+    for (auto& lanes : sums.film.sums) f(lanes);
+    for (auto& step : sums.surfaces)
+        for (auto& lanes : step.sums) f(lanes);
+    for (auto& lanes : sums.pose) f(lanes);
 }
 
-CameraDerivatives TangentPath::derivatives(const Sums& sums) const {
-    return derivatives_of(sums, [](const auto& lanes) { return std::accumulate(lanes, lanes + kLanes, 0.0); });
+TangentPath::Coefficients TangentPath::coefficients(const CameraDerivatives& along) const {
+    // Derivatives are linear in the sums: a coefficient is the derivative that a sum of 1 alone yields.
+    Sums unit(*this);
+    Coefficients list;
+    const auto add = [&] {
+        const CameraDerivatives by = derivatives(unit);
+        const auto product = [](const auto& a, const auto& b) {
+            return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+        };
+        list.push_back(product(by.by_variable, along.by_variable) + product(by.by_film, along.by_film) +
+                       product(by.by_pose, along.by_pose));
+    };
+    for_sums(unit, [&](auto& lanes) {
+        lanes[0] = 1;
+        add();
+        lanes[0] = 0;
+    });
+    for (std::size_t k = 0; k < surfaces_.size(); ++k)
+        for (std::size_t i = 0; i < unit.forms[k].size() / kLanes; ++i)
+            for (int lane = 0; lane < kDualLanes; ++lane) {
+                unit.forms[k][i].by[lane] = 1;
+                add();
+                unit.forms[k][i].by[lane] = 0;
+            }
+    return list;
+}
+
+void TangentPath::add_along(const Coefficients& coefficients, const Sums& sums, std::array<double, kLanes>& by) {
+    auto coefficient = coefficients.begin();
+    for_sums(sums, [&](const auto& lanes) {
+        const double factor = *coefficient++;
+        if (factor == 0) return;
+        for (std::size_t i = 0; i < kLanes; ++i) by[i] += factor * lanes[i];
+    });
+    for (const std::vector<Dual8>& form : sums.forms) {
+        const std::size_t blocks = form.size() / kLanes;
+        for (std::size_t block = 0; block < blocks; ++block)
+            for (int lane = 0; lane < kDualLanes; ++lane) {
+                const double factor = *coefficient++;
+                for (std::size_t i = 0; i < kLanes; ++i) by[i] += factor * form[i * blocks + block].by[lane];
+            }
+    }
 }
 
 }  // namespace realcam

@@ -63,17 +63,23 @@ public:
     /// surface. On return, the rays are in the camera's frame, but the tangents are not.
     void record(Rays& rays, std::vector<Crossing>& crossings, const WavelengthsInDouble* wavelengths = nullptr) const;
 
-    /// Returns the derivatives that follow from the sums of one lane, or of all lanes.
-    CameraDerivatives derivatives(const Sums& sums, int lane) const;
+    /// Returns the derivatives that follow from the sums of all lanes.
     CameraDerivatives derivatives(const Sums& sums) const;
 
+    /// Derivative along a direction, as the coefficients of each sum (for_sums).
+    using Coefficients = std::vector<double>;
+    /// `along`: rates of the numbers of the camera in the direction.
+    Coefficients coefficients(const CameraDerivatives& along) const;
+    /// Adds the derivative along a direction, which follows from the sums of each lane, to `by`.
+    static void add_along(const Coefficients& coefficients, const Sums& sums, std::array<double, kLanes>& by);
+
 private:
+    /// Calls f(sums of the lanes) for all sums but those of freeform terms.
+    template <class SomeSums, class F>
+    static void for_sums(SomeSums& sums, F&& f);
     /// Calls trace_tangents for surface k.
     void trace_surface(std::size_t k, Rays& rays, AdjointStep<kLanes>& step, Dual8* form_sums,
                        const WavelengthsInDouble* wavelengths) const;
-    template <class Lane>
-    CameraDerivatives derivatives_of(const Sums& sums, const Lane& lane_sum) const;
-
     std::vector<LensVariable> variables_;
     std::vector<TangentSurface> surfaces_;  ///< from the film to the scene
     std::vector<FreeformView<double>> freeforms_;

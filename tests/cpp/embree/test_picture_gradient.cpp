@@ -355,7 +355,7 @@ TEST_CASE("derivatives of a picture with occlusion, defocus and vignetting equal
         {count + kFilm + 3, [](Camera& c, double h) { c.lens.film_placement.tilt_deg.x += h; }, 0.3, kDegree},
         {count + kRight, translation({1, 0, 0}), 2e-4, 1e3, true},
         {count + kUp, translation({0, 1, 0}), 2e-4, 1e3},
-        {count + kBackward, translation({0, 0, 1}), 1e-3, 1e3, true},
+        {count + kBackward, translation({0, 0, 1}), 1e-3, 1e3},
         {count + kPitch, [](Camera& c, double h) { c.pose.look_at_m = {0, std::sin(h), -std::cos(h)}; }, 5e-4, 1},
         {count + kYaw, [](Camera& c, double h) { c.pose.look_at_m = {-std::sin(h), 0, -std::cos(h)}; }, 5e-4, 1},
         {count + kRoll, [](Camera& c, double h) { c.pose.up = {-std::sin(h), std::cos(h), 0}; }, 2e-3, 1},
