@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <numbers>
@@ -33,7 +34,7 @@ void check_supported(const Camera& camera, const RenderSettings& settings, Pixel
     if (camera.geometry) refuse("do not support calibrated cameras");
     if (camera.moves()) refuse("do not support cameras that move during the exposure");
     for (const EffectInfo& effect : kEffects)
-        if (settings.effects.*effect.member && !effect.is_on())
+        if (settings.effects.*effect.member && !effect.is_on() && effect.member != &EffectChoice::dispersion)
             refuse(std::string("do not support the effect ") + effect.name);
     if (settings.pupil_sampling != PupilSampling::outline) refuse("need the pupil sampling outline");
 }
@@ -51,6 +52,7 @@ struct SampleLight {
     Vec2f pixel;  ///< film point, in pixels of the picture
     Color light;  ///< weight times radiance
     float weight;
+    float variable;  ///< WavelengthVariable of the sample, if the camera has dispersion
 };
 
 }  // namespace
@@ -123,7 +125,11 @@ public:
             trace(block, film.rays, film.time, results);
             for (int i = 0; i < kLanes; ++i)
                 if (film.rays.passed[i])
-                    f(i, SampleLight{in_picture(film.pixel[i]), results.irradiance[i], film.rays.weight[i]}, film);
+                    f(i,
+                      SampleLight{in_picture(film.pixel[i]),
+                                  on_film(results.irradiance[i], film.wavelengths.cell_position[i]),
+                                  film.rays.weight[i], film.variable[i]},
+                      film);
         });
     }
 
@@ -135,8 +141,10 @@ public:
         for_blocks(samples_.outline_spp, hash32(samples_.seed, kSalt), block, [&](int used) {
             const PixelPoints<kLanes> film(of_.view_, block);
             const LaneNumbers<kLanes> u(block, dimension::pupil);
+            FilmSamples<kLanes> samples;
+            if (of_.view_.effects.dispersion) sample_wavelengths(of_.view_, block, samples);
             std::vector<Edge> edges;
-            for (int first = 0; first < used; first += kRays) find_edges(block, film, u, first, used, edges);
+            for (int first = 0; first < used; first += kRays) find_edges(block, film, u, samples, first, used, edges);
             for (std::size_t first = 0; first < edges.size(); first += kLanes)
                 shade_edges(block, edges, first, std::min<std::size_t>(kLanes, edges.size() - first), f);
         });
@@ -147,9 +155,10 @@ public:
 private:
     /// Edge of the pupil at a film point.
     struct Edge {
-        int lane;  ///< of its sample
+        int lane;  ///< lane of its sample
         Vec2f pixel;  ///< film point, in pixels of the picture
         double weight;  ///< inverse density
+        float variable, cell_position;  ///< of the sample's wavelength, if the camera has dispersion
         DirectionLine line;
         OutlinePoint point;
     };
@@ -157,6 +166,12 @@ private:
     Vec2f in_picture(Vec2f pixel) const {
         const auto margin = static_cast<float>(of_.margin_);
         return {pixel.x - margin, pixel.y - margin};
+    }
+
+    /// Colour on the film of the irradiance of a sample with a wavelength; without dispersion, the irradiance itself.
+    Color on_film(Color irradiance, float cell_position) const {
+        if (!of_.view_.effects.dispersion || samples_.uniform) return irradiance;
+        return film_color(of_.view_.dispersion, cell_position, irradiance);
     }
 
     /// Calls f(number of lanes in use) for blocks of samples of the row's pixels.
@@ -195,16 +210,19 @@ private:
 
     /// Sends lines from the centres of the pupil's boxes in random directions.
     void find_edges(const SampleBlock<kLanes>& block, const PixelPoints<kLanes>& film, const LaneNumbers<kLanes>& u,
-                    int first, int used, std::vector<Edge>& edges) {
+                    const FilmSamples<kLanes>& samples, int first, int used, std::vector<Edge>& edges) {
         constexpr double kEnd = 1.6;  // in half-widths of the box, beyond its corners
         DirectionLine lines[kRays];
         double areas[kRays];
+        float variable[kRays];
         for (int i = 0; i < kRays; ++i) {
             const int lane = std::min(first + i, used - 1);
+            variable[i] = samples.variable[lane];
             lines[i] = line_of(film[lane], u[lane].x, areas[i]);
         }
         OutlinePoint points[OutlineRays::kMostPoints][kRays];
-        unexplained += of_.outline_.find(of_.path_, lines, kEnd, points);
+        const WavelengthsInDouble wavelengths = of_.wavelengths(variable);
+        unexplained += of_.outline_.find(of_.path_, lines, kEnd, of_.if_dispersed(wavelengths), points);
         for (const auto& lanes : points)
             for (int i = 0; i < kRays && first + i < used; ++i) {
                 const OutlinePoint& point = lanes[i];
@@ -214,7 +232,8 @@ private:
                 const Vec2f pixel = {static_cast<float>(block.column[lane]) + offset.x,
                                      static_cast<float>(block.row[lane]) + offset.y};
                 edges.push_back({lane, in_picture(pixel),
-                                 2 * std::numbers::pi * areas[i] * point.t * point.inverse_speed, lines[i], point});
+                                 2 * std::numbers::pi * areas[i] * point.t * point.inverse_speed, variable[i],
+                                 samples.wavelengths.cell_position[lane], lines[i], point});
             }
         edge_count += std::min(used - first, kRays);
     }
@@ -272,7 +291,8 @@ private:
                 const Edge& edge = edges[first + static_cast<std::size_t>(lane)];
                 lines[i] = edge.line, t[i] = edge.point.t, points[i] = &edge.point;
                 const auto weight = static_cast<float>(edge.weight);
-                lights[i] = {edge.pixel, weight * results.irradiance[lane], weight};
+                lights[i] = {edge.pixel, weight * on_film(results.irradiance[lane], edge.cell_position), weight,
+                             edge.variable};
             }
             TangentPath::Rays starts = of_.outline_.start(lines, t);
             f(starts, points, lights, used);
@@ -356,6 +376,14 @@ double PictureGradient::exposure_per_sample(int spp) const {
     return camera_.exposure_time_s * settings_.filter_transmittance() / spp;
 }
 
+WavelengthsInDouble PictureGradient::wavelengths(const float* variable) const {
+    return {view_.dispersion.to_scene, variable};
+}
+
+const WavelengthsInDouble* PictureGradient::if_dispersed(const WavelengthsInDouble& many) const {
+    return view_.effects.dispersion ? &many : nullptr;
+}
+
 Vec3d PictureGradient::film_origin(Vec3f origin) const {
     return {static_cast<double>(origin.x), static_cast<double>(origin.y), camera_.lens.film_distance};
 }
@@ -375,6 +403,7 @@ namespace {
 struct RayBlock {
     TangentPath::Rays rays;
     SampleLight lights[kRays];
+    float variable[kRays];
     int count = 0;
 
     /// Adds a ray at the film. Lanes that are not filled hold copies of the last ray, whose tangents are 0.
@@ -384,6 +413,7 @@ struct RayBlock {
             rays.direction.set(i, direction);
             rays.direction_tangent.set(i, {0, 0, 0});
             rays.status[i] = 0;
+            variable[i] = light.variable;
         }
         lights[count++] = light;
     }
@@ -433,7 +463,8 @@ std::vector<double> PictureGradient::reverse(const float* adjoint, const float* 
             TangentPath::Sums sums(path_);
             RayBlock block;
             const auto trace_block = [&] {
-                path_.trace(block.rays, sums);
+                const WavelengthsInDouble many = wavelengths(block.variable);
+                path_.trace(block.rays, sums, nullptr, nullptr, if_dispersed(many));
                 block.count = 0;
             };
             const double scale = exposure_per_sample(samples.spp);
@@ -454,14 +485,17 @@ std::vector<double> PictureGradient::reverse(const float* adjoint, const float* 
                                             const SampleLight* lights, int used) {
                     int surfaces[kRays];
                     Vec3d tangents[kRays];
+                    float variable[kRays];
                     for (int i = 0; i < kRays; ++i) {
+                        variable[i] = lights[i].variable;
                         const Vec3f value = film(lights[i].pixel, lights[i].light, lights[i].weight);
                         const double weight = i < used ? outline_scale * static_cast<double>(value.x) : 0;
                         surfaces[i] = points[i]->surface;
                         tangents[i] = weight * points[i]->tangent;
                         by_stop += weight * points[i]->stop_rate;
                     }
-                    path_.trace(rays, sums, surfaces, tangents);
+                    const WavelengthsInDouble many = wavelengths(variable);
+                    path_.trace(rays, sums, surfaces, tangents, if_dispersed(many));
                 });
             append_numbers(path_.derivatives(sums), by_stop, rows[at]);
             unexplained[at] = row.unexplained, edges[at] = row.edge_count;
@@ -480,23 +514,24 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
     const std::size_t numbers = number_count(), count = directions.size() / numbers;
     FilmRows film(*this, count);
     const Vec2d per_mm = pixels_per_mm();
-    /// Derivatives along the directions, from those by the numbers.
-    const auto along = [&](const CameraDerivatives& by, double by_stop, std::vector<double>& list,
-                           std::vector<double>& result) {
-        list.clear();
-        append_numbers(by, by_stop, list);
-        result.resize(count);
-        for (std::size_t k = 0; k < count; ++k)
-            result[k] = std::inner_product(list.begin(), list.end(),
-                                           directions.begin() + static_cast<std::ptrdiff_t>(k * numbers), 0.0);
-    };
+    std::vector<TangentPath::Coefficients> along;
+    std::vector<double> stop_rates;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double* direction = directions.data() + k * numbers;
+        const double* others = direction + path_.variable_count();
+        CameraDerivatives rates;
+        rates.by_variable.assign(direction, others);
+        std::copy(others, others + 6, rates.by_film.begin());
+        std::copy(others + 6, others + 12, rates.by_pose.begin());
+        along.push_back(path_.coefficients(rates));
+        stop_rates.push_back(others[12]);
+    }
     run(
         [&](int row_index) {
             Row row(*this, samples, row_index);
             auto& rows = film.rows_of(row_index);
             TangentPath::Sums sums(path_);
             RayBlock block;
-            std::vector<double> list, x[kRays], y;
             // Adds light times a factor of each pixel's filter to the derivative pictures.
             const auto add = [&](const SampleLight& sample, std::size_t k, auto&& factor) {
                 for_filtered_pixels(filter_, width(), height(), sample.pixel, [&](int pixel, float value, Vec2f slope) {
@@ -513,16 +548,19 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
                 RayBlock other = block;
                 for (int i = 0; i < block.count; ++i) block.set_tangent(i, {1, 0}), other.set_tangent(i, {0, 1});
                 sums.clear();
-                path_.trace(block.rays, sums);
-                for (int i = 0; i < block.count; ++i) along(path_.derivatives(sums, i), 0, list, x[i]);
+                const WavelengthsInDouble many = wavelengths(block.variable);
+                path_.trace(block.rays, sums, nullptr, nullptr, if_dispersed(many));
+                // Motions of the film points along x and y, for each direction.
+                std::vector<std::array<double, kRays>> x(count), y(count);
+                for (std::size_t k = 0; k < count; ++k) TangentPath::add_along(along[k], sums, x[k]);
                 sums.clear();
-                path_.trace(other.rays, sums);
-                for (int i = 0; i < block.count; ++i) {
-                    along(path_.derivatives(sums, i), 0, list, y);
-                    for (std::size_t k = 0; k < count; ++k)
+                path_.trace(other.rays, sums, nullptr, nullptr, if_dispersed(many));
+                for (std::size_t k = 0; k < count; ++k) {
+                    TangentPath::add_along(along[k], sums, y[k]);
+                    for (std::size_t i = 0; i < static_cast<std::size_t>(block.count); ++i)
                         add(block.lights[i], k, [&](double, Vec2f slope) {
-                            return scale * (per_mm.x * x[i][k] * static_cast<double>(slope.x) +
-                                            per_mm.y * y[k] * static_cast<double>(slope.y));
+                            return scale * (per_mm.x * x[k][i] * static_cast<double>(slope.x) +
+                                            per_mm.y * y[k][i] * static_cast<double>(slope.y));
                         });
                 }
                 block.count = 0;
@@ -539,13 +577,21 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
                                             const SampleLight* lights, int used) {
                     int surfaces[kRays];
                     Vec3d tangents[kRays];
-                    for (int i = 0; i < kRays; ++i) surfaces[i] = points[i]->surface, tangents[i] = points[i]->tangent;
+                    float variable[kRays];
+                    for (int i = 0; i < kRays; ++i) {
+                        surfaces[i] = points[i]->surface, tangents[i] = points[i]->tangent;
+                        variable[i] = lights[i].variable;
+                    }
                     sums.clear();
-                    path_.trace(rays, sums, surfaces, tangents);
-                    for (int i = 0; i < used; ++i) {
-                        along(path_.derivatives(sums, i), points[i]->stop_rate, list, y);
-                        for (std::size_t k = 0; k < count; ++k)
-                            add(lights[i], k, [&](double value, Vec2f) { return outline_scale * y[k] * value; });
+                    const WavelengthsInDouble many = wavelengths(variable);
+                    path_.trace(rays, sums, surfaces, tangents, if_dispersed(many));
+                    for (std::size_t k = 0; k < count; ++k) {
+                        std::array<double, kRays> speeds{};
+                        TangentPath::add_along(along[k], sums, speeds);
+                        for (std::size_t i = 0; i < static_cast<std::size_t>(used); ++i) {
+                            const double speed = speeds[i] + stop_rates[k] * points[i]->stop_rate;
+                            add(lights[i], k, [&](double value, Vec2f) { return outline_scale * speed * value; });
+                        }
                     }
                 });
         },

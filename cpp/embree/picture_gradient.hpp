@@ -80,6 +80,10 @@ private:
     double exposure_per_sample(int spp) const;
     /// Columns per mm along x of the film, and rows per mm along y.
     Vec2d pixels_per_mm() const;
+    /// Indices of samples with wavelengths; `variable`: WavelengthVariable of each sample.
+    WavelengthsInDouble wavelengths(const float* variable) const;
+    /// Returns the address of `many`, or null if the camera has no dispersion.
+    const WavelengthsInDouble* if_dispersed(const WavelengthsInDouble& many) const;
     // Ray at the film, in the double precision of its tangent.
     Vec3d film_origin(Vec3f origin) const;
     Vec3d film_direction(Vec3f direction) const;

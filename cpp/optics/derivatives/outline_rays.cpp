@@ -70,14 +70,22 @@ TangentPath::Rays OutlineRays::start(const DirectionLine (&lines)[kLanes], const
     return rays;
 }
 
-void OutlineRays::trace(const DirectionLine (&lines)[kLanes], const double (&t)[kLanes], int (&passes)[kLanes]) const {
+// target_clones compiles only inlined code for each instruction set, hence `flatten`.
+__attribute__((flatten)) REALCAM_CLONES void OutlineRays::trace(const DirectionLine (&lines)[kLanes],
+                                                                const double (&t)[kLanes],
+                                                                const WavelengthsInDouble* wavelengths,
+                                                                int (&passes)[kLanes]) const {
     TangentPath::Rays rays = start(lines, t);
-    trace_lens(view_, static_cast<LensRays<double, kLanes>&>(rays));
+    auto& without_tangents = static_cast<LensRays<double, kLanes>&>(rays);
+    if (wavelengths)
+        trace_lens(view_, without_tangents, NoRecord{}, *wavelengths);
+    else
+        trace_lens(view_, without_tangents);
     for (int i = 0; i < kLanes; ++i) passes[i] = rays.status[i] == 0;
 }
 
 int OutlineRays::find(const TangentPath& path, const DirectionLine (&lines)[kLanes], double end,
-                      OutlinePoint (&points)[kMostPoints][kLanes]) const {
+                      const WavelengthsInDouble* wavelengths, OutlinePoint (&points)[kMostPoints][kLanes]) const {
     constexpr int kProbes = 6;  // intervals in which one change is sought
     constexpr int kHalvings = 26;  // leave 1e-8 of an interval
     for (auto& lanes : points)
@@ -85,11 +93,11 @@ int OutlineRays::find(const TangentPath& path, const DirectionLine (&lines)[kLan
     double low[kMostPoints][kLanes], high[kMostPoints][kLanes];
     int low_passes[kMostPoints][kLanes], counts[kLanes] = {}, last[kLanes], most = 0;
     double t[kLanes] = {};
-    trace(lines, t, last);
+    trace(lines, t, wavelengths, last);
     for (int probe = 1; probe <= kProbes; ++probe) {
         int passes[kLanes];
         for (double& at : t) at = end * probe / kProbes;
-        trace(lines, t, passes);
+        trace(lines, t, wavelengths, passes);
         for (int i = 0; i < kLanes; ++i) {
             if (passes[i] != last[i] && counts[i] < kMostPoints) {
                 const int n = counts[i]++;
@@ -106,13 +114,13 @@ int OutlineRays::find(const TangentPath& path, const DirectionLine (&lines)[kLan
         for (int halving = 0; halving < kHalvings; ++halving) {
             int passes[kLanes];
             for (int i = 0; i < kLanes; ++i) t[i] = 0.5 * (low[n][i] + high[n][i]);
-            trace(lines, t, passes);
+            trace(lines, t, wavelengths, passes);
             for (int i = 0; i < kLanes; ++i) (passes[i] == low_passes[n][i] ? low : high)[n][i] = t[i];
         }
         for (int i = 0; i < kLanes; ++i) t[i] = low_passes[n][i] ? low[n][i] : high[n][i];
         TangentPath::Rays rays = start(lines, t);
         std::vector<TangentPath::Crossing> crossings;
-        path.record(rays, crossings);
+        path.record(rays, crossings, wavelengths);
         for (int i = 0; i < kLanes; ++i) {
             if (counts[i] <= n) continue;
             OutlinePoint& point = points[n][i];

@@ -36,9 +36,9 @@ public:
     OutlineRays(const LensSystem& lens, double wavelength_nm);
 
     /// Searches the lines from t = 0 to `end`. Returns the number of edges that no rim explains, such as those of total
-    /// internal reflection. `path`: tangents of the same lens at the same wavelength.
+    /// internal reflection. `path`: tangents of the same lens. `wavelengths`: see TangentPath::trace.
     int find(const TangentPath& path, const DirectionLine (&lines)[kLanes], double end,
-             OutlinePoint (&points)[kMostPoints][kLanes]) const;
+             const WavelengthsInDouble* wavelengths, OutlinePoint (&points)[kMostPoints][kLanes]) const;
 
     /// Starts rays with tangents along the lines at t.
     TangentPath::Rays start(const DirectionLine (&lines)[kLanes], const double (&t)[kLanes]) const;
@@ -52,14 +52,15 @@ private:
     };
     Edge edge_at(const SurfaceView<double>& surface, Vec2d at) const;
     /// Sets `passes` to 1 for each lane whose ray at t passes the lens.
-    void trace(const DirectionLine (&lines)[kLanes], const double (&t)[kLanes], int (&passes)[kLanes]) const;
+    void trace(const DirectionLine (&lines)[kLanes], const double (&t)[kLanes], const WavelengthsInDouble* wavelengths,
+               int (&passes)[kLanes]) const;
 
     LensPath<double> lens_;
     LensView<double> view_;
     double film_distance_, squared_index_;
     bool stop_is_rim_ = false;  ///< the diaphragm is round
     int stop_index_;
-    double apothem_rate_ = 0, curvature_rate_ = 0;  ///< of the blades, per growth of the diaphragm's radius
+    double apothem_rate_ = 0, curvature_rate_ = 0;  ///< rates of the blades, per growth of the diaphragm's radius
 };
 
 }  // namespace REALCAM_NAMESPACE

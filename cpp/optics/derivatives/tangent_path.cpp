@@ -124,9 +124,19 @@ void TangentPath::Sums::clear() {
         for (double& sum : lanes) sum = 0;
 }
 
+inline void TangentPath::trace_surface(std::size_t k, Rays& rays, AdjointStep<kLanes>& step, Dual8* form_sums,
+                                       const WavelengthsInDouble* wavelengths) const {
+    if (wavelengths)
+        trace_tangents(surfaces_[k], WavelengthsInDouble{wavelengths->surfaces + k, wavelengths->variable}, rays, step,
+                       form_sums);
+    else
+        trace_tangents(surfaces_[k], OneWavelength{}, rays, step, form_sums);
+}
+
 // target_clones compiles only inlined code for each instruction set, hence `flatten`.
 __attribute__((flatten)) REALCAM_CLONES void TangentPath::trace(Rays& rays, Sums& sums, const int* starts,
-                                                                const Vec3d* rim_tangents) const {
+                                                                const Vec3d* rim_tangents,
+                                                                const WavelengthsInDouble* wavelengths) const {
     constexpr int N = kLanes;
     for (int i = 0; i < N; ++i) {
         if (!starts) {
@@ -139,7 +149,7 @@ __attribute__((flatten)) REALCAM_CLONES void TangentPath::trace(Rays& rays, Sums
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
         const TangentSurface& surface = surfaces_[k];
         AdjointStep<N>& step = sums.surfaces[k];
-        trace_tangents(surface, rays, step, sums.forms[k].data());
+        trace_surface(k, rays, step, sums.forms[k].data(), wavelengths);
         step.origin = rays.origin, step.direction = rays.direction;
         if (!starts) continue;
         for_surface_points(surface, rays.origin, sums.forms[k].data(), [&](const auto& point, int i) {
@@ -165,21 +175,22 @@ __attribute__((flatten)) REALCAM_CLONES void TangentPath::trace(Rays& rays, Sums
     }
 }
 
-__attribute__((flatten)) REALCAM_CLONES void TangentPath::record(Rays& rays, std::vector<Crossing>& crossings) const {
+__attribute__((flatten)) REALCAM_CLONES void TangentPath::record(Rays& rays, std::vector<Crossing>& crossings,
+                                                                 const WavelengthsInDouble* wavelengths) const {
     for (int i = 0; i < kLanes; ++i) rays.origin_tangent.set(i, {0, 0, 0});
     crossings.resize(surfaces_.size());
     AdjointStep<kLanes> unused{};
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
         std::vector<Dual8> forms(surfaces_[k].view.kind == SurfaceShape::freeform ? kLanes * duals_[k].size() : 0);
-        trace_tangents(surfaces_[k], rays, unused, forms.data());
+        trace_surface(k, rays, unused, forms.data(), wavelengths);
         crossings[k].origin = rays.origin, crossings[k].direction = rays.direction;
         crossings[k].origin_tangent = rays.origin_tangent;
     }
     change_frame(exit_, static_cast<LensRays<double, kLanes>&>(rays));
 }
 
-template <class Lane>
-CameraDerivatives TangentPath::derivatives_of(const Sums& sums, const Lane& lane_sum) const {
+CameraDerivatives TangentPath::derivatives(const Sums& sums) const {
+    const auto lane_sum = [](const auto& lanes) { return std::accumulate(lanes, lanes + kLanes, 0.0); };
     CameraDerivatives result;
     result.by_variable.assign(variables_.size(), 0);
     const auto adjoints_of = [&](const AdjointStep<kLanes>& step, double* adjoints) {
@@ -209,12 +220,56 @@ CameraDerivatives TangentPath::derivatives_of(const Sums& sums, const Lane& lane
     return result;
 }
 
-CameraDerivatives TangentPath::derivatives(const Sums& sums, int lane) const {
-    return derivatives_of(sums, [lane](const auto& lanes) { return lanes[lane]; });
+template <class SomeSums, class F>
+void TangentPath::for_sums(SomeSums& sums, F&& f) {
+    for (auto& lanes : sums.film.sums) f(lanes);
+    for (auto& step : sums.surfaces)
+        for (auto& lanes : step.sums) f(lanes);
+    for (auto& lanes : sums.pose) f(lanes);
 }
 
-CameraDerivatives TangentPath::derivatives(const Sums& sums) const {
-    return derivatives_of(sums, [](const auto& lanes) { return std::accumulate(lanes, lanes + kLanes, 0.0); });
+TangentPath::Coefficients TangentPath::coefficients(const CameraDerivatives& along) const {
+    // Derivatives are linear in the sums: a coefficient is the derivative that a sum of 1 alone yields.
+    Sums unit(*this);
+    Coefficients list;
+    const auto add = [&] {
+        const CameraDerivatives by = derivatives(unit);
+        const auto product = [](const auto& a, const auto& b) {
+            return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+        };
+        list.push_back(product(by.by_variable, along.by_variable) + product(by.by_film, along.by_film) +
+                       product(by.by_pose, along.by_pose));
+    };
+    for_sums(unit, [&](auto& lanes) {
+        lanes[0] = 1;
+        add();
+        lanes[0] = 0;
+    });
+    for (std::size_t k = 0; k < surfaces_.size(); ++k)
+        for (std::size_t i = 0; i < unit.forms[k].size() / kLanes; ++i)
+            for (int lane = 0; lane < kDualLanes; ++lane) {
+                unit.forms[k][i].by[lane] = 1;
+                add();
+                unit.forms[k][i].by[lane] = 0;
+            }
+    return list;
+}
+
+void TangentPath::add_along(const Coefficients& coefficients, const Sums& sums, std::array<double, kLanes>& by) {
+    auto coefficient = coefficients.begin();
+    for_sums(sums, [&](const auto& lanes) {
+        const double factor = *coefficient++;
+        if (factor == 0) return;
+        for (std::size_t i = 0; i < kLanes; ++i) by[i] += factor * lanes[i];
+    });
+    for (const std::vector<Dual8>& form : sums.forms) {
+        const std::size_t blocks = form.size() / kLanes;
+        for (std::size_t block = 0; block < blocks; ++block)
+            for (int lane = 0; lane < kDualLanes; ++lane) {
+                const double factor = *coefficient++;
+                for (std::size_t i = 0; i < kLanes; ++i) by[i] += factor * form[i * blocks + block].by[lane];
+            }
+    }
 }
 
 }  // namespace realcam

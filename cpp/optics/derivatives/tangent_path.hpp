@@ -50,8 +50,10 @@ public:
     /// film's rays (film_path_ends): x and y on the film and the film distance. A ray's tangent starts at the film,
     /// with the change of the ray's optical direction, or at the rim of surface `starts[lane]`: it then has the
     /// direction `rim_tangents[lane]` behind that surface, in whose plane the ray's point is fixed. On return, rays and
-    /// tangents are those in front of the lens, in the camera's frame.
-    void trace(Rays& rays, Sums& sums, const int* starts = nullptr, const Vec3d* rim_tangents = nullptr) const;
+    /// tangents are those in front of the lens, in the camera's frame. `wavelengths`: indices of the rays' own
+    /// wavelengths at the surfaces, in the order of the trace; null: all rays have the wavelength of the constructor.
+    void trace(Rays& rays, Sums& sums, const int* starts = nullptr, const Vec3d* rim_tangents = nullptr,
+               const WavelengthsInDouble* wavelengths = nullptr) const;
 
     /// Rays behind a surface, in its frame, and tangents of their points on it.
     struct Crossing {
@@ -59,20 +61,29 @@ public:
     };
     /// Traces rays and their tangents from the film like `trace`, but without sums, and records their crossings of each
     /// surface. On return, the rays are in the camera's frame, but the tangents are not.
-    void record(Rays& rays, std::vector<Crossing>& crossings) const;
+    void record(Rays& rays, std::vector<Crossing>& crossings, const WavelengthsInDouble* wavelengths = nullptr) const;
 
-    /// Returns the derivatives that follow from the sums of one lane, or of all lanes.
-    CameraDerivatives derivatives(const Sums& sums, int lane) const;
+    /// Returns the derivatives that follow from the sums of all lanes.
     CameraDerivatives derivatives(const Sums& sums) const;
 
-private:
-    template <class Lane>
-    CameraDerivatives derivatives_of(const Sums& sums, const Lane& lane_sum) const;
+    /// Derivative along a direction, as the coefficients of each sum (for_sums).
+    using Coefficients = std::vector<double>;
+    /// `along`: rates of the numbers of the camera in the direction.
+    Coefficients coefficients(const CameraDerivatives& along) const;
+    /// Adds the derivative along a direction, which follows from the sums of each lane, to `by`.
+    static void add_along(const Coefficients& coefficients, const Sums& sums, std::array<double, kLanes>& by);
 
+private:
+    /// Calls f(sums of the lanes) for all sums but those of freeform terms.
+    template <class SomeSums, class F>
+    static void for_sums(SomeSums& sums, F&& f);
+    /// Calls trace_tangents for surface k.
+    void trace_surface(std::size_t k, Rays& rays, AdjointStep<kLanes>& step, Dual8* form_sums,
+                       const WavelengthsInDouble* wavelengths) const;
     std::vector<LensVariable> variables_;
     std::vector<TangentSurface> surfaces_;  ///< from the film to the scene
     std::vector<FreeformView<double>> freeforms_;
-    /// Of each surface: one without derivatives, whose lanes FreeformPoint uses, then one for every eight variables.
+    /// For each surface: one without derivatives, whose lanes FreeformPoint uses, then one for every eight variables.
     std::vector<std::vector<DualSurface>> duals_;
     std::vector<DualFrame> film_frames_;  ///< motion of the film, one for every eight variables
     FrameChange<double> exit_;  ///< from the last surface's frame to the camera's

@@ -35,13 +35,14 @@ inline void add_start(Vec3d at, Vec3d direction_tangent, AdjointStep<N>& step, i
 
 /// Computes the tangent of one ray behind a surface from that in front of it, and adds the contributions of the
 /// surface's frame and numbers, and of the medium in front of it, to `step`. `o`, `p`: the ray in front of the surface;
-/// `rays` holds the ray behind it and its tangent in front of it, both in the surface's frame.
+/// `rays` holds the ray behind it and its tangent in front of it, both in the surface's frame. `index_squared`: that of
+/// SurfaceView, in front of the surface.
 ///
 /// The direction behind a surface is p' = p + k G, with the gradient G of the surface. Because |p| and |p'| are the
 /// refractive indices, which the tangent does not change, dk = -k (dp . G + p' . dG) / (p' . G).
 template <int N, class SurfacePoint>
-inline void push_tangent(const SurfacePoint& point, Vec3d o, Vec3d p, TangentRays<N>& rays, AdjointStep<N>& step,
-                         int lane) {
+inline void push_tangent(const SurfacePoint& point, double index_squared, Vec3d o, Vec3d p, TangentRays<N>& rays,
+                         AdjointStep<N>& step, int lane) {
     const Vec3d at = rays.origin[lane], behind = rays.direction[lane], tangent = rays.direction_tangent[lane];
     const Vec3d gradient = point.gradient(), bend = behind - p;
     const double t = dot(at - o, p) / dot(p, p);
@@ -60,9 +61,26 @@ inline void push_tangent(const SurfacePoint& point, Vec3d o, Vec3d p, TangentRay
     step.add(kFrameX, lane, at_tangent.x * bend + at.x * bend_tangent);
     step.add(kFrameY, lane, at_tangent.y * bend + at.y * bend_tangent);
     step.add(kFrameZ, lane, at_tangent.z * bend + at.z * bend_tangent);
-    step.add(kIndexSquared, lane, -0.5 * t_tangent);  // H by n is the length n t
+    // H by n is the length n t. The index of the ray's wavelength may differ from that of the view.
+    step.add(kIndexSquared, lane, -0.5 * t_tangent * std::sqrt(dot(p, p) / index_squared));
     point.add_numbers(-strength * at_tangent, strength_tangent, step, lane);
 }
+
+/// ManyWavelengths for rays in double precision.
+struct WavelengthsInDouble {
+    const IndexCubic* surfaces;  ///< n'^2 / n^2 - 1 of each surface, in the order of the trace
+    const float* variable;  ///< value of the WavelengthVariable of each ray
+
+    struct Boundary {
+        ManyWavelengths::Boundary in_float;
+        static constexpr bool is_coated = false;
+        double squared_index_change(int lane) const { return static_cast<double>(in_float.squared_index_change(lane)); }
+    };
+    template <class Surface>
+    Boundary at(const Surface&, int index) const {
+        return {{surfaces[index], variable}};
+    }
+};
 
 /// Surface with the data for the tangents of rays that cross it.
 struct TangentSurface {
@@ -113,10 +131,10 @@ inline bool replace_ended(TangentRays<N>& rays, Vec3Lanes<double, N>& o, Vec3Lan
 
 /// Traces N rays and their tangents through one surface, which blocks none of them, and adds the contributions of its
 /// numbers to `step`. `form_sums`: for freeforms, the contributions of their own variables: for each lane, as many
-/// dual numbers as there are dual surfaces.
-template <int N>
-inline void trace_tangents(const TangentSurface& surface, TangentRays<N>& rays, AdjointStep<N>& step,
-                           Dual8* form_sums) {
+/// dual numbers as there are dual surfaces. `media`: policy of trace_lens for this surface.
+template <int N, class Media>
+inline void trace_tangents(const TangentSurface& surface, const Media& media, TangentRays<N>& rays,
+                           AdjointStep<N>& step, Dual8* form_sums) {
     const FrameChange<double> frame = surface.before;
     Vec3Lanes<double, N> o, p;
     if (frame.changes) {
@@ -136,12 +154,13 @@ inline void trace_tangents(const TangentSurface& surface, TangentRays<N>& rays, 
     }
     // The frame has already been changed.
     const LensView<double> one{&surface.traced, 1, LensKind::any, {}, {nullptr, surface.freeform, nullptr}};
-    trace_lens<LensKind::any>(one, static_cast<LensRays<double, N>&>(rays));
+    trace_lens<LensKind::any>(one, static_cast<LensRays<double, N>&>(rays), NoRecord{}, media);
     int ended = 0;
     for (int i = 0; i < N; ++i) ended |= rays.status[i];
     if (ended != 0 && !replace_ended(rays, o, p)) return;
-    for_surface_points(surface, rays.origin, form_sums,
-                       [&](const auto& point, int i) { push_tangent(point, o[i], p[i], rays, step, i); });
+    for_surface_points(surface, rays.origin, form_sums, [&](const auto& point, int i) {
+        push_tangent(point, surface.view.index_squared, o[i], p[i], rays, step, i);
+    });
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -15,9 +15,21 @@ struct FilmSamples {
     Vec3Lanes<float, N> origin, direction;  ///< ray at the film, see FilmRaySample
     CameraRays<N> rays;
     Lanes<float, N> time;  ///< fraction of the exposure
+    // If the camera has dispersion:
+    SampleWavelengths<N> wavelengths;
+    Lanes<float, N> variable;  ///< WavelengthVariable of each sample
 };
 
-/// Samples film points, pupil points and times, and traces the rays through the lens.
+/// Draws the wavelengths of samples.
+template <int N>
+REALCAM_HD inline void sample_wavelengths(const CameraView& camera, const SampleBlock<N>& block,
+                                          FilmSamples<N>& samples) {
+    draw_wavelengths(camera.dispersion, block, samples.wavelengths);
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) samples.variable[i] = camera.dispersion.variable.at(samples.wavelengths.nm[i]);
+}
+
+/// Samples film points, pupil points, times and wavelengths, and traces the rays through the lens.
 template <LensKind lens_kind, int N>
 REALCAM_HD inline void sample_film(const CameraView& camera, const SampleBlock<N>& block, FilmSamples<N>& samples) {
     const PixelPoints<N> film(camera, block);
@@ -29,7 +41,16 @@ REALCAM_HD inline void sample_film(const CameraView& camera, const SampleBlock<N
         samples.origin.set(i, ray.origin);
         samples.direction.set(i, ray.direction);
     }
-    generate_rays_from<lens_kind>(camera, block, film, samples.rays);
+    if (camera.effects.dispersion) {
+        LensRays<float, N> inside;
+        sample_wavelengths(camera, block, samples);
+        start_lens_rays<lens_kind>(camera, block, film, u, inside, samples.rays);
+        trace_lens<lens_kind>(camera.lens, inside, NoRecord{},
+                              ManyWavelengths{camera.dispersion.to_scene, samples.variable});
+        set_camera_rays(camera, inside, samples.rays);
+    } else {
+        generate_rays_from<lens_kind>(camera, block, film, samples.rays);
+    }
     expose_rays(camera, block, samples.rays, samples.time);
 }
 

@@ -92,8 +92,8 @@ def render_gradient(
     outline_spp: samples per pixel on the outline of the pupil, by default spp / 4. control_spp: samples per pixel, of
       other random numbers, of a first picture that serves as control variate, by default spp / 4; 0: none.
     settings, changes: settings of rc.render; the samples on the film are those of rc.render with the same seed.
-      Derivatives do not take a noise goal, nor effects; they trace no lights, so that images of point lights and
-      suns themselves are missing.
+      Derivatives take no noise goal, and no effect but dispersion. They trace no lights, so that the images of point
+      lights and suns themselves are missing.
 
     The derivative is taken at fixed rays of the scene (docs/picture-derivatives.md). Raises InputError for what is not
     supported, by name.

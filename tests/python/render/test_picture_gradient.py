@@ -166,7 +166,7 @@ def test_filtered_picture_is_the_tent_of_a_finer_picture() -> None:
     def coarse(seed: int) -> NDArray[np.float64]:
         fine = rc.render(
             scene, camera.replace(film=fine_film), spp=4, seed=seed, max_bounces=0, effects=()
-        ).exposure.astype(float)
+        ).pixels.astype(float)
         rows = np.stack([np.tensordot(tent, fine[16 * i + 8 : 16 * i + 40], 1) for i in range(8)])
         return np.stack([np.tensordot(tent, rows[:, 16 * i + 8 : 16 * i + 40], (0, 1)) for i in range(8)], 1)
 

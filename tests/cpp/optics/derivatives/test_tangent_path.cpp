@@ -45,23 +45,26 @@ Vec3d film_motion(const LensSystem& lens, const LensVariable& v) {
 }
 
 struct Tangents {
-    CameraDerivatives by[2];  ///< of x and y on the film
+    CameraDerivatives by[2];  ///< derivatives of x and y on the film
     Vec3d origin, direction;  ///< ray in front of the lens, in the camera's frame, towards the scene
     std::vector<Vec3d> behind;  ///< directions behind each surface, in its frame
     std::vector<Vec3d> at;
 };
 
-/// Starts a ray in all lanes; `w`: direction of the tangent in the film's direction cosines.
+constexpr int kLane = 3;  ///< the only lane with a tangent
+
+/// Starts a ray in all lanes, and its tangent in one; `w`: direction of the tangent in the film's direction cosines.
 TangentPath::Rays start_rays(const LensSystem& lens, const FilmRay& ray, Vec2d w) {
     TangentPath::Rays rays;
     const double n = lens.indices(lens.wavelength_nm).back(), z = -std::sqrt(n * n - ray.l * ray.l - ray.m * ray.m);
     for (int i = 0; i < TangentPath::kLanes; ++i) {
         rays.origin.set(i, {ray.x, ray.y, lens.film_distance});
         rays.direction.set(i, {ray.l, ray.m, z});
-        // The light's direction cosines are opposite to the ray's.
-        rays.direction_tangent.set(i, {-w.x, -w.y, (ray.l * w.x + ray.m * w.y) / z});
+        rays.direction_tangent.set(i, {0, 0, 0});
         rays.status[i] = 0;
     }
+    // The light's direction cosines are opposite to the ray's.
+    rays.direction_tangent.set(kLane, {-w.x, -w.y, (ray.l * w.x + ray.m * w.y) / z});
     return rays;
 }
 
@@ -71,13 +74,13 @@ Tangents tangents_of(const TangentPath& path, const LensSystem& lens, const Film
         TangentPath::Rays rays = start_rays(lens, ray, {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0});
         TangentPath::Sums sums(path);
         path.trace(rays, sums);
-        REQUIRE(rays.status[3] == 0);
-        result.by[axis] = path.derivatives(sums, 3);
-        result.origin = rays.origin[3], result.direction = rays.direction[3];
+        REQUIRE(rays.status[kLane] == 0);
+        result.by[axis] = path.derivatives(sums);
+        result.origin = rays.origin[kLane], result.direction = rays.direction[kLane];
         if (axis == 1) continue;
         for (const auto& step : sums.surfaces) {
-            result.behind.push_back(step.direction[3]);
-            result.at.push_back(step.origin[3]);
+            result.behind.push_back(step.direction[kLane]);
+            result.at.push_back(step.origin[kLane]);
         }
     }
     return result;
@@ -170,10 +173,10 @@ void check_rim(const LensSystem& lens, const std::vector<LensVariable>& variable
     TangentPath::Sums sums(path);
     std::array<int, TangentPath::kLanes> starts;
     starts.fill(k);
-    std::array<Vec3d, TangentPath::kLanes> tangents;
-    tangents.fill({outwards.x, outwards.y, dot(outwards, p) / -p.z});
+    std::array<Vec3d, TangentPath::kLanes> tangents{};
+    tangents[kLane] = {outwards.x, outwards.y, dot(outwards, p) / -p.z};
     path.trace(rays, sums, starts.data(), tangents.data());
-    const CameraDerivatives found = path.derivatives(sums, 5);
+    const CameraDerivatives found = path.derivatives(sums);
     const DualPath truth(lens, LightDirection::to_film, lens.wavelength_nm, variables, ExitFrame::film, false);
     DualPath::Tape tape;
     RayDerivatives ray;
