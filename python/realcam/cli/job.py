@@ -8,24 +8,23 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
 import typer
 
+from .. import files
 from .._core import InputError
 from ..image_file import DEVELOPED
 from ..json_values import json_text
 from ..number_text import counted, duration_text, number_text, percent_text
 from ..progress import progress_bar
 from ..shot import Shot
+from ..video import write_video
 from . import options
-from .completions import completion_of
 from .grouped_options import grouped
 from .shot_options import load_shot, shot_options
 from .work_options import (
     FarmOptions,
     PartText,
     Scheduler,
-    Threads,
     check_single,
     farm_files,
     part_of,
@@ -33,12 +32,13 @@ from .work_options import (
 )
 
 if TYPE_CHECKING:
+    from ..image import Image
     from ..job import Job
 
 app = typer.Typer(help="Render pictures on many machines, in a folder that all of them share.", no_args_is_help=True)
 
 Folder = Annotated[Path, typer.Argument(help="Folder of the job, created by `realcam job make`", metavar="FOLDER")]
-
+Fps = Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second of a video")]
 ShotOptions = shot_options("ShotOptions", without=("threads",))  # the number of threads is set for each process
 
 
@@ -53,19 +53,12 @@ def make(
     ],
     changes: ShotOptions,  # type: ignore[valid-type]
     farm: FarmOptions,
-    device: Annotated[
-        str,
-        typer.Option(
-            metavar="DEVICE",
-            help="Device of all processes: auto (a GPU if there is one), cpu or cuda",
-            autocompletion=completion_of("DEVICE"),
-        ),
-    ] = "auto",
+    device: options.Device = "auto",
     frames: Annotated[
         str | None,
         typer.Option("--frames", metavar="A-B", help="Frames of a video, 1-240 or 1-240x2"),
     ] = None,
-    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second of the scene's time")] = 24.0,
+    fps: Fps = 24.0,
     tile: Annotated[
         str | None,
         typer.Option(
@@ -80,7 +73,6 @@ def make(
 
     The folder contains everything that the job needs; the shot files and the files that they name are not read again.
     """
-    from .. import files
     from ..job import Job
     from ..job.farm_files import work_of_job
     from ..job.making import check_is_new
@@ -112,7 +104,7 @@ def work(
         int | None,
         typer.Option("--workers", metavar="N", help="Number of processes [one for each 4 cores]", min=1, max=10000),
     ] = None,
-    threads: Threads = 0,
+    threads: options.Threads = 0,
     here: Annotated[bool, typer.Option("--here", help="Render in this process alone, without Dask")] = False,
     scheduler: Scheduler = None,
     device: Annotated[
@@ -192,7 +184,7 @@ def finish(
     format: Annotated[
         str, typer.Option("--format", metavar="NAME", help="Format of pictures in a folder: exr, png, jpg, tif or webp")
     ] = "exr",
-    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second of a video")] = 24.0,
+    fps: Fps = 24.0,
     device: Annotated[
         str | None,
         typer.Option("--device", metavar="DEVICE", help="Device for layers without samples [that of the job]"),
@@ -200,54 +192,42 @@ def finish(
     quiet: options.Quiet = False,
 ) -> None:
     """Add up the units of a job and write its pictures. The command may be repeated."""
-    from ..files import remove_leftovers
     from ..job import Job
 
     format = options.known_word(format, ("exr", "png", "jpg", "tif", "webp"), "format")
     job = Job.load(folder)
-    remove_leftovers(job.path)
-    if [path.suffix.lower() for path in output] == [".mp4"]:
-        _write_video(job, output[0], fps, device, quiet)
-    else:
-        _write_pictures(job, _picture_files(job, output, format), device, quiet)
-
-
-def _write_video(job: Job, path: Path, fps: float, device: str | None, quiet: bool) -> None:
-    from .. import files
-    from ..video import write_video
-
-    files.check_targets([path], outside=job.path)
+    files.remove_leftovers(job.path)
+    is_video = [path.suffix.lower() for path in output] == [".mp4"]
+    targets = {"": output} if is_video else _picture_files(job, output, format)
+    files.check_targets([path for paths in targets.values() for path in paths], outside=job.path)
     with progress_bar("adding up", is_shown=not quiet) as bar:
-        write_video(path, _developed(job, device, bar), fps)
-    options.say_written(path, quiet)
+        if is_video:
+            write_video(output[0], (image.developed() for _, image in _images(job, device, bar)), fps)
+            options.say_written(output[0], quiet)
+            return
+        for name, image in _images(job, device, bar):
+            for path in targets[name]:
+                image.save(path)
+                options.say_written(path, quiet)
+
+
+def _images(job: Job, device: str | None, bar: Callable[[float], bool]) -> Iterator[tuple[str, Image]]:
+    """Yields name and picture of all shots in order."""
+    for done, name in enumerate(job.names):
+        bar(done / len(job.names))
+        yield name, job.image(name, device=device)
 
 
 def _picture_files(job: Job, output: list[Path], format: str) -> dict[str, list[Path]]:
     """Returns the files to write for each picture, by its name. Creates the folder if `output` is one."""
-    from .. import files
-
-    is_file = [path.suffix.lower() in (".exr", *DEVELOPED) for path in output]
-    if all(is_file):
+    if all(path.suffix.lower() in (".exr", *DEVELOPED) for path in output):
         if len(job.names) > 1:
             raise InputError(f"the job has {len(job.names)} pictures; --output must be a folder")
-        targets = {job.names[0]: output}
-    else:
-        if len(output) > 1:
-            raise InputError("--output must be one folder, or files .exr, .png, .jpg, .tif and .webp")
-        files.make_folder(output[0])
-        targets = {name: [output[0] / f"{name}.{format}"] for name in job.names}
-    files.check_targets([path for paths in targets.values() for path in paths], outside=job.path)
-    return targets
-
-
-def _write_pictures(job: Job, targets: dict[str, list[Path]], device: str | None, quiet: bool) -> None:
-    with progress_bar("adding up", is_shown=not quiet) as bar:
-        for done, (name, paths) in enumerate(targets.items()):
-            bar(done / len(targets))
-            image = job.image(name, device=device)
-            for path in paths:
-                image.save(path)
-                options.say_written(path, quiet)
+        return {job.names[0]: output}
+    if len(output) > 1:
+        raise InputError("--output must be one folder, or files .exr, .png, .jpg, .tif and .webp")
+    files.make_folder(output[0])
+    return {name: [output[0] / f"{name}.{format}"] for name in job.names}
 
 
 def _named_shots(paths: list[Path], changes: Any, device: str) -> dict[str, Shot]:
@@ -257,13 +237,6 @@ def _named_shots(paths: list[Path], changes: Any, device: str) -> dict[str, Shot
             raise InputError(f"{path}: two shots are called {path.stem}; use other names")
         shots[path.stem] = load_shot(path, changes, device)
     return shots
-
-
-def _developed(job: Job, device: str | None, bar: Callable[[float], bool]) -> Iterator[np.ndarray]:
-    """Yields all pictures in order, as 8-bit sRGB arrays."""
-    for done, name in enumerate(job.names):
-        bar(done / len(job.names))
-        yield job.image(name, device=device).developed()
 
 
 def _tile(text: str | None) -> tuple[int, int] | None:

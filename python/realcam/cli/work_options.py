@@ -29,7 +29,6 @@ Scheduler = Annotated[
         "--scheduler", metavar="ADDRESS", help="Address of a Dask scheduler: tcp://head:8786, or its .json file"
     ),
 ]
-Threads = Annotated[int, typer.Option(metavar="N", help="Threads of each process; 0: all cores", min=0, max=4096)]
 
 
 @dataclass(frozen=True)

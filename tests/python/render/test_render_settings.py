@@ -120,7 +120,7 @@ def test_a_word_that_is_none_is_told(words: dict[str, Any], sentence: str) -> No
     [
         ({"spp": 0}, "spp must be a whole number from 1 to 16777216, or auto"),
         ({"spp": 1 << 25}, "spp must be a whole number from 1 to 16777216, or auto"),
-        ({"max_bounces": 65}, 'max_bounces must be "auto", or lie between'),
+        ({"max_bounces": 65}, "max_bounces must be a whole number from 0 to 64, or auto"),
         ({"seed": -1}, "seed must be a whole number from 0 to 4294967295"),
         ({"seed": 1 << 32}, "seed must be a whole number from 0 to 4294967295"),
         ({"threads": -1}, "threads must be a whole number from 0 to 4096"),
