@@ -155,8 +155,7 @@ REALCAM_INLINE Color interior_absorption(const Material& material) {
 /// cross_air has multiplied that of the phase function.
 template <int N>
 REALCAM_INLINE void scatter_in_air(const AirView& air, int slot, Vec3f position, Vec2f u, PathState<N>& path) {
-    const Vec3f arriving = path.rays.direction[slot],
-                direction = sample_henyey_greenstein(air.anisotropy, arriving, u);
+    const Vec3f arriving = path.rays.direction[slot], direction = sample_henyey_greenstein(air.anisotropy, arriving, u);
     path.rays.origin.set(slot, position);
     path.rays.direction.set(slot, direction);
     path.rays.active[slot] = !is_black(path.throughput[slot]);
@@ -219,7 +218,8 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     if constexpr (scene_kind != SceneKind::plain) {
         path.set_receiver_lobe(slot, receiver.lobe);
         if (refracted)
-            path.absorption.set(slot, point.is_front ? interior_absorption<scene_kind>(*point.material) : Color{0, 0, 0});
+            path.absorption.set(slot,
+                                point.is_front ? interior_absorption<scene_kind>(*point.material) : Color{0, 0, 0});
     }
     return false;
 }

@@ -154,7 +154,12 @@ def test_a_shot_file_has_air(tmp_path: Path) -> None:
     in_python = clear.with_air(extinction_per_m=(0.1, 0.2, 0.3), albedo=0.9, anisotropy=-0.2, margin_m=7)
     assert np.array_equal(seen(shot(full)), pixels(in_python, camera(), "cpu", spp=4))
     by_visibility = pixels(clear.with_air(50), camera(), "cpu", spp=4)
-    for text, changes in [("[air]\nvisibility_m = 50\n", {}), ("air = 50\n", {}), ("", {"air": 50}), (full, {"air": 50})]:
+    for text, changes in [
+        ("[air]\nvisibility_m = 50\n", {}),
+        ("air = 50\n", {}),
+        ("", {"air": 50}),
+        (full, {"air": 50}),
+    ]:
         assert np.array_equal(seen(shot(text, **changes)), by_visibility)
     for text, message in {
         "air = 0\n": "shot.toml:6: the visibility must be a positive number of metres",
@@ -188,7 +193,19 @@ def test_invalid_air_is_refused() -> None:
 @pytest.mark.picture_files
 def test_the_command_takes_a_visibility_and_reports_the_air(tmp_path: Path) -> None:
     (tmp_path / "quad.obj").write_text("v -1 -1 -5\nv 1 -1 -5\nv 1 1 -5\nv -1 1 -5\nf 1 2 3 4\n")
-    words = ["render", "quad.obj", "-o", "a.png", "--visibility", "39.12", "--resolution", "12x8", "--spp", "1", "--json"]
+    words = [
+        "render",
+        "quad.obj",
+        "-o",
+        "a.png",
+        "--visibility",
+        "39.12",
+        "--resolution",
+        "12x8",
+        "--spp",
+        "1",
+        "--json",
+    ]
     done = subprocess.run(
         [*programs.PYTHON, *words, "--device", "cpu"], cwd=tmp_path, capture_output=True, text=True, check=True
     )
@@ -197,6 +214,7 @@ def test_the_command_takes_a_visibility_and_reports_the_air(tmp_path: Path) -> N
     assert air["albedo"] == [1, 1, 1]
 
 
+@pytest.mark.slow
 def test_the_light_is_that_of_mitsuba() -> None:
     """benchmarks/fog_against_mitsuba.py: each part of the picture within 1%, and the noise of the difference."""
     pytest.importorskip("mitsuba", reason="Mitsuba is not installed: pip install 'realcam[mitsuba]'")
