@@ -33,10 +33,9 @@ def post(x: float, z: float, height: float = 1.1, radius: float = 0.06, sides: i
     foot = np.stack([x + radius * np.cos(angles), np.zeros(sides), z + radius * np.sin(angles)], axis=1)
     a, b = np.arange(sides), (np.arange(sides) + 1) % sides
     sheet = np.concatenate([np.stack([a, a + sides, b], axis=1), np.stack([b, a + sides, b + sides], axis=1)])
-    top = np.stack(
-        [np.full(sides - 2, sides), sides + 1 + np.arange(sides - 2) + 1, sides + 1 + np.arange(sides - 2)], 1
-    )
-    return np.concatenate([foot, foot + (0, height, 0)]), np.concatenate([sheet, top])
+    fan = sides + 1 + np.arange(sides - 2)
+    top = np.stack([np.full(sides - 2, sides), fan + 1, fan], axis=1)
+    return np.concatenate([foot, foot + np.array((0, height, 0))]), np.concatenate([sheet, top])
 
 
 def street() -> rc.Scene:
@@ -60,7 +59,7 @@ def street() -> rc.Scene:
     for lamp in lamps:
         light = tuple(CANDELA * np.array((1.0, 0.95, 0.83)))
         scene = scene.with_spot_light(
-            lamp + (0, 0, 0.01), (-0.03, -0.02, 1), light, inner_cone_deg=4, outer_cone_deg=22
+            tuple(np.add(lamp, (0, 0, 0.01))), (-0.03, -0.02, 1), light, inner_cone_deg=4, outer_cone_deg=22
         )
     return scene.with_environment((0.02, 0.03, 0.05))
 
@@ -75,9 +74,8 @@ def main() -> None:
     arguments = parser.parse_args()
     lens = rc.Lens.load(arguments.lens).focused(12.0).wide_open()
     film = rc.Film(36, 24, (arguments.width, arguments.width * 2 // 3))
-    camera = rc.Camera(
-        lens, film=film, position=(-0.6, 1.3, 0), look_at=(0.9, 0.8, -24), exposure_time_s=1 / 30, iso=400
-    )
+    view = {"position": (-0.6, 1.3, 0), "look_at": (0.9, 0.8, -24)}
+    camera = rc.Camera(lens, film=film, exposure_time_s=1 / 30, iso=400, **view)
     scene = street().with_air(arguments.visibility)
     image = rc.render(scene, camera, spp=arguments.spp, effects={"ghosts", "coatings", "dispersion", "diffraction"})
     image.save(arguments.output)
