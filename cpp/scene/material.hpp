@@ -124,8 +124,8 @@ inline constexpr std::array<TextureReference Material::*, 11> kMaterialTextures 
 /// Features that a scene requires of the kernels; kernels are compiled for each kind, because unused features cost
 /// speed.
 enum class SceneKind : std::int32_t {
-    plain,  ///< as opaque; all materials are plain (Material::is_plain), and there are no vertex colours
-    opaque,  ///< no material has holes (Material::has_holes), nothing moves, and there is no air
+    plain,  ///< all materials are plain (Material::is_plain), no vertex colours, no motion, no air
+    opaque,  ///< no material has holes (Material::has_holes), no motion, no air
     any,  ///< no restriction
 };
 

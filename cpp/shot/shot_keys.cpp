@@ -122,7 +122,9 @@ void to_air(Table t, Key key, Request r) {
     }
     const ShotTable table(*node->as_table(), t.file());
     table.allow({"visibility_m", "extinction_per_m", "albedo", "anisotropy", "margin_m"});
-    const auto color = [](Vec3d v) { return Color{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; };
+    const auto color = [](Vec3d v) {
+        return Color{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+    };
     const auto extinction = table.number_or_three("extinction_per_m");
     if (extinction.has_value() == (table.find("visibility_m") != nullptr))
         table.fail("expected either \"visibility_m\" or \"extinction_per_m\"");

@@ -190,9 +190,10 @@ Raises InputError.)")
 position_m: (x, y, z). direction: (x, y, z), axis of the cone. intensity: (r, g, b) in cd, on the axis.
 inner_cone_deg, outer_cone_deg: angles from the axis; the intensity decreases from the inner cone to 0 at the outer one.
 Raises InputError.)")
-        .def("with_air", &with_air, "visibility_m"_a = py::none(), py::kw_only(), "extinction_per_m"_a = py::none(),
-             "albedo"_a = 1.0, "anisotropy"_a = 0.8, "margin_m"_a = py::none(),
-             R"(Returns the scene with other air, a homogeneous medium such as fog that fills the space outside of glass.
+        .def(
+            "with_air", &with_air, "visibility_m"_a = py::none(), py::kw_only(), "extinction_per_m"_a = py::none(),
+            "albedo"_a = 1.0, "anisotropy"_a = 0.8, "margin_m"_a = py::none(),
+            R"(Returns the scene with other air, a homogeneous medium such as fog that fills the space outside of glass.
 visibility_m: distance at which a black object has a contrast of 2% against the horizon; the extinction coefficient is
   3.912 / visibility_m (Koschmieder 1924). extinction_per_m: that coefficient instead, a number or (r, g, b), per metre.
   Without both, the air is clear.

@@ -113,8 +113,8 @@ REALCAM_INLINE void set_time_and_number(const PathState<N>& path, int slot, int 
 /// (kScatteredByAir). `hits`: of the rays; modified.
 template <int N, class SceneT, class Probe>
 REALCAM_INLINE void cross_air_block(const SceneView& view, const CameraView& camera, const PathSettings& settings,
-                              const SampleBlock<N>& block, int bounce, SceneT&& scene, Probe&& probe, Hits<N>& hits,
-                              PathState<N>& path, PathResults<N>& results) {
+                                    const SampleBlock<N>& block, int bounce, SceneT&& scene, Probe&& probe,
+                                    Hits<N>& hits, PathState<N>& path, PathResults<N>& results) {
     const std::uint32_t dimension = dimension::air + 3 * static_cast<std::uint32_t>(bounce);
     const PathNumbers<N> points(block, path, dimension), lights(block, path, dimension + 1),
         paths(block, path, dimension + 2);
@@ -126,12 +126,9 @@ REALCAM_INLINE void cross_air_block(const SceneView& view, const CameraView& cam
         const int lane = path.lane(i);
         const Vec3f origin = path.rays.origin[i], direction = path.rays.direction[i];
         const bool is_hit = hits.triangle[i] != kNoTriangle;
-        const AirCrossing crossing =
-            cross_air(view,
-                               {origin, direction, is_hit ? hits.distance[i] : kFarAway, path.rays.time[i],
-                                path.throughput[i]},
-                               all_lobes_scatter(settings, bounce),
-                               {points[i], lights[i], paths[i], block.bits(lane, dimension)});
+        const AirCrossing crossing = cross_air(
+            view, {origin, direction, is_hit ? hits.distance[i] : kFarAway, path.rays.time[i], path.throughput[i]},
+            all_lobes_scatter(settings, bounce), {points[i], lights[i], paths[i], block.bits(lane, dimension)});
         if (bounce <= settings.max_bounces && !is_black(crossing.from_light)) {
             const float limit = bounce > 0 ? settings.clamp * path.weight[i] : 0.0f;
             set_time_and_number<SceneKind::any>(path, i, kLightSampleCount, shadow.rays);
@@ -147,8 +144,7 @@ REALCAM_INLINE void cross_air_block(const SceneView& view, const CameraView& cam
         hits.distance[i] = crossing.scattered_at;
         path.pdf[i] = crossing.density_ratio;
     }
-    add_unoccluded_light<SceneKind::any>(
-        shadow, scene, probe, [](int) { return false; }, path, results);
+    add_unoccluded_light<SceneKind::any>(shadow, scene, probe, [](int) { return false; }, path, results);
 }
 
 /// Scatters the path of a GPU's thread, which has registers for one shadow ray: each ray is traced right after it is

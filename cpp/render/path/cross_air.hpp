@@ -105,7 +105,7 @@ struct AirNumbers {
     std::uint32_t seed;  ///< random bits
 };
 
-/// What the air does to a path along one ray.
+/// Result of cross_air: effect of the air on a path along one ray.
 struct AirCrossing {
     LightSample light;  ///< sample of a light at `scattering_point`
     Vec3f scattering_point;
@@ -187,7 +187,8 @@ REALCAM_GPU_CALL AirCrossing cross_air(const SceneView& scene, AirRay ray, bool 
     if (!may_scatter) {
         crossing.weight = transmittance(air.extinction, inside.length);
     } else if (u.path.x < probability) {
-        const float distance = free_path.sample(remapped_random(u.path.x, probability)), density = free_path.density(distance);
+        const float distance = free_path.sample(remapped_random(u.path.x, probability)),
+                    density = free_path.density(distance);
         crossing.scattered_at = inside.begin + distance;
         crossing.weight = (1.0f / density) * air.scattering * transmittance(air.extinction, distance);
         crossing.density_ratio = density / point_density(distance);

@@ -76,7 +76,8 @@ struct PathState {
     Vec3Lanes<float, N> receiver_to_eye;  ///< LightLobe::to_eye; the lobe is unused for SceneKind::plain
     Lanes<float, N> receiver_alpha, receiver_share;  ///< LightLobe::alpha and LightLobe::share
     Lanes<SkySampling, N> receiver_sky;  ///< sampling of the environment there; set for SceneKind::any only
-    ColorLanes<N> absorption;  ///< absorption of the glass around the ray, per metre; black outside of glass
+    ColorLanes<N> absorption;  ///< absorption of the glass around the ray, per metre (interior_absorption); black
+                               ///< outside of glass
 
     REALCAM_INLINE PathState() {
         REALCAM_LANES

@@ -142,18 +142,20 @@ REALCAM_ONE_COPY LightSample light_by_illuminance(const SceneView& scene, LightR
     return chosen;
 }
 
-/// Returns the absorption of a material's interior, per metre. That of clear glass is too small to have an effect, but
-/// not black: PathState::absorption is black only outside of glass.
+/// Returns the absorption of a material's interior, per metre. In scenes that may have air, that of clear glass is too
+/// small to have an effect, but not black: PathState::absorption is then black only outside of glass.
+template <SceneKind scene_kind>
 REALCAM_INLINE Color interior_absorption(const Material& material) {
-    return is_black(material.absorption) ? grey(1e-30f) : material.absorption;
+    if constexpr (scene_kind == SceneKind::any)
+        if (is_black(material.absorption)) return grey(1e-30f);
+    return material.absorption;
 }
 
 /// Continues a path at a point at which the air scatters it. The density in the path's state is the factor by which
 /// cross_air has multiplied that of the phase function.
 template <int N>
 REALCAM_INLINE void scatter_in_air(const AirView& air, int slot, Vec3f position, Vec2f u, PathState<N>& path) {
-    const Vec3f arriving = path.rays.direction[slot],
-                direction = sample_henyey_greenstein(air.anisotropy, arriving, u);
+    const Vec3f arriving = path.rays.direction[slot], direction = sample_henyey_greenstein(air.anisotropy, arriving, u);
     path.rays.origin.set(slot, position);
     path.rays.direction.set(slot, direction);
     path.rays.active[slot] = !is_black(path.throughput[slot]);
@@ -216,7 +218,8 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     if constexpr (scene_kind != SceneKind::plain) {
         path.set_receiver_lobe(slot, receiver.lobe);
         if (refracted)
-            path.absorption.set(slot, point.is_front ? interior_absorption(*point.material) : Color{0, 0, 0});
+            path.absorption.set(slot,
+                                point.is_front ? interior_absorption<scene_kind>(*point.material) : Color{0, 0, 0});
     }
     return false;
 }

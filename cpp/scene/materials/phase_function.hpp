@@ -17,8 +17,8 @@ REALCAM_INLINE Vec3f sample_henyey_greenstein(float anisotropy, Vec3f direction,
     // The usual inverse of the cumulative distribution divides by g. This form, with that division carried out, is
     // accurate for all g.
     const float g = anisotropy, v = 2.0f * u.x - 1.0f, denominator = 1.0f + g * v;
-    const float ratio = (v + 0.5f * g * (v * v + 3.0f) + g * g * v + 0.5f * g * g * g * (v * v - 1.0f)) /
-                        (denominator * denominator);
+    const float ratio =
+        (v + 0.5f * g * (v * v + 3.0f) + g * g * v + 0.5f * g * g * g * (v * v - 1.0f)) / (denominator * denominator);
     const float cosine = select(ratio < 1.0f, at_least(ratio, -1.0f), 1.0f);
     const float sine = sqrt_or_zero(1.0f - cosine * cosine);
     const Vec2f azimuth = cos_sin_of_turn(u.y);

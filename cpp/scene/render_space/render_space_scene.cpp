@@ -173,8 +173,7 @@ void RenderSpaceScene::set_air() {
         if (!boxes_[i].empty())
             for (int corner = 0; corner < 8; ++corner)
                 box.add(assembly_.instances[i].scene_from_object.point(boxes_[i].corner(corner)));
-    const double margin =
-        air.margin_m.value_or(0.5 * kKoschmieder / static_cast<double>(luminance(air.extinction)));
+    const double margin = air.margin_m.value_or(0.5 * kKoschmieder / static_cast<double>(luminance(air.extinction)));
     const Vec3d reach = {margin, margin, margin};
     air_.low = static_cast<Vec3f>(box.low - reach - origin_);
     air_.high = static_cast<Vec3f>(box.high + reach - origin_);

@@ -236,12 +236,11 @@ TEST_CASE("light that the air scatters once from a point light and a spot") {
         Color extinction;
         bool is_spot;
     };
-    const std::vector<Case> cases = {{{1, 0.5, -3}, 0, {0.1f, 0.2f, 0.4f}, false},
-                                     {{1e-2, 0, -3}, 0.8f, {0.1f, 0.2f, 0.4f}, false},
-                                     {{0, 2, 4}, -0.5f, {0.02f, 0.02f, 0.02f}, false},  // behind the camera
-                                     {{20, 0, -100}, 0.5f, {0.01f, 0.02f, 0.05f}, false},
-                                     {{1, 2, -3}, 0.6f, {1.5f, 1, 0}, false},
-                                     {{0, 2, -4}, 0.3f, {0.1f, 0.2f, 0.3f}, true}};
+    const std::vector<Case> cases = {
+        {{1, 0.5, -3}, 0, {0.1f, 0.2f, 0.4f}, false},        {{1e-2, 0, -3}, 0.8f, {0.1f, 0.2f, 0.4f}, false},
+        {{0, 2, 4}, -0.5f, {0.02f, 0.02f, 0.02f}, false},  // behind the camera
+        {{20, 0, -100}, 0.5f, {0.01f, 0.02f, 0.05f}, false}, {{1, 2, -3}, 0.6f, {1.5f, 1, 0}, false},
+        {{0, 2, -4}, 0.3f, {0.1f, 0.2f, 0.3f}, true}};
     Worst worst;
     for (std::size_t k = 0; k < cases.size(); ++k) {
         CAPTURE(k);
@@ -307,9 +306,8 @@ TEST_CASE("samples of a lamp and samples of the phase function find the same lig
                             const Vec3d at = corner + s * u + t * v;
                             const double area = length(cross(u, v));
                             return area * scattered_once({0, 0, 0}, {0, 0, -1}, far, kExtinction,
-                                                         static_cast<double>(g), at, [&](Vec3d d) {
-                                                             return 5 * std::max(0.0, d.z);
-                                                         });
+                                                         static_cast<double>(g), at,
+                                                         [&](Vec3d d) { return 5 * std::max(0.0, d.z); });
                         },
                         0.0, 1.0, 5, 1e-6);
                 },
@@ -340,8 +338,8 @@ TEST_CASE("samples of a lamp and samples of the phase function find the same lig
                 const Vec3f from = ray.origin + crossing.scattered_at * ray.direction;
                 const Vec3f direction = sample_henyey_greenstein(g, ray.direction, direction_u);
                 const Hit hit = closest_hit<true>(traversals.bvh(), from, direction, kFarAway);
-                const bool is_lamp = hit.triangle != kNoTriangle && direction.z < 0 &&
-                                     view.triangles[hit.triangle].material == 1;
+                const bool is_lamp =
+                    hit.triangle != kNoTriangle && direction.z < 0 && view.triangles[hit.triangle].material == 1;
                 by_phase.add(is_lamp ? 5 * static_cast<double>(crossing.weight.g) / static_cast<double>(kAlbedo) *
                                            std::exp(-kExtinction * static_cast<double>(hit.distance))
                                      : 0.0);
