@@ -188,7 +188,7 @@ class DatasetFolder:
         return set(self._samples_of(path, self.numbers_of(shard), wanted=())) if os.path.lexists(path) else set()
 
     def _shard_content(self, shard: int) -> bytes:
-        """Returns the content of a shard of finished samples, some of which may be in it already."""
+        """Returns the content of a shard. Its samples are finished, or in its present file."""
         path, numbers = self.shard_path(shard), self.numbers_of(shard)
         samples = self._samples_of(path, numbers) if os.path.lexists(path) else {}
         content = io.BytesIO()

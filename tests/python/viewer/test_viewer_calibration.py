@@ -91,7 +91,7 @@ def test_another_film_is_refused_in_one_line_and_another_lens_keeps_the_film(sho
 def test_a_saved_shot_has_the_geometry(
     shot_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_option: bool, is_table: bool
 ) -> None:
-    """Also for a calibration of the command line, and in another folder."""
+    """The calibration may come from the command line, and the shot be saved in another folder."""
     monkeypatch.chdir(tmp_path)
     text = shot_file.read_text()
     if not is_table:
