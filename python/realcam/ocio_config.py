@@ -142,8 +142,8 @@ class OcioConfig:
 
     @contextmanager
     def _errors_named(self) -> Iterator[None]:
-        """Raises errors of OpenColorIO as InputErrors in one line that begins with the configuration's name. Its remarks
-        are not printed: they quote a stranger's text unchanged."""
+        """Raises errors of OpenColorIO as InputErrors in one line that begins with the configuration's name. Its
+        remarks are not printed: they quote a stranger's text unchanged."""
         level = ocio.GetLoggingLevel()
         ocio.SetLoggingLevel(ocio.LOGGING_LEVEL_NONE)
         try:
