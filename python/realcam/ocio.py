@@ -108,4 +108,4 @@ def opened(config: str) -> OcioConfig:
         raise InputError(f"{config}: configurations need OpenColorIO: pip install realcam[color]") from None
     from .ocio_config import OcioConfig
 
-    return OcioConfig(config)
+    return OcioConfig(config, is_built_in=config.startswith(BUILT_IN))

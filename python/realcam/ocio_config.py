@@ -12,7 +12,6 @@ import numpy as np
 import PyOpenColorIO as ocio
 
 from ._core import InputError, _read_file
-from .ocio import BUILT_IN
 
 _MAX_CONFIG_BYTES = 16 << 20
 _MAX_LUT_BYTES = 128 << 20  # of each file
@@ -66,11 +65,11 @@ class OcioConfig:
     """A configuration. name: its file, or a name that begins with "ocio://". All functions raise InputError, whose
     message begins with the name."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, *, is_built_in: bool) -> None:
         self.name = name
         self._files: _Files | None = None  # OpenColorIO keeps no reference to it
         with self._errors_named():
-            if name.startswith(BUILT_IN):
+            if is_built_in:
                 self._config = ocio.Config.CreateFromFile(name)
                 return
             self._files = _Files(name)
@@ -142,8 +141,8 @@ class OcioConfig:
 
     @contextmanager
     def _errors_named(self) -> Iterator[None]:
-        """Raises errors of OpenColorIO as InputErrors in one line that begins with the configuration's name. Its remarks
-        are not printed: they quote a stranger's text unchanged."""
+        """Raises errors of OpenColorIO as InputErrors in one line that begins with the configuration's name. Its
+        remarks are not printed: they quote a stranger's text unchanged."""
         level = ocio.GetLoggingLevel()
         ocio.SetLoggingLevel(ocio.LOGGING_LEVEL_NONE)
         try:

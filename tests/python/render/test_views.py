@@ -372,8 +372,8 @@ def test_the_executable_says_who_has_views(tmp_path: Path) -> None:
     done = subprocess.run([*EXECUTABLE, *words], capture_output=True, text=True)
     assert done.returncode == 2
     assert done.stderr == (
-        f"realcam: error: {STUDIO}: this program has no OpenColorIO; the command of the Python package realcam[color] has "
-        "it\n"
+        f"realcam: error: {STUDIO}: this program has no OpenColorIO; the command of the Python package realcam[color] "
+        "has it\n"
     )
     done = subprocess.run(
         [*EXECUTABLE, "render", path, "-q", "-o", tmp_path / "a.exr", "--exr-color-space", "acescg"],
