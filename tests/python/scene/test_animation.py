@@ -177,7 +177,7 @@ def test_a_picture_shows_a_mesh_that_deforms_in_the_middle_of_its_exposure(tmp_p
     for effects in ((), ("-motion_blur", "-rolling_shutter")):
         camera = scenes.pinhole()
         session = rc.Session(scene, camera, device=device, effects=effects)
-        for opens_s, exposure_s, readout_s in ((0, 1, 0), (0, 3, 0), (1, 1, 0.5), (6, 1, 0)):
+        for opens_s, exposure_s, readout_s in ((0, 1, 0), (0, 3, 0), (2, 1, 0.5), (6, 1, 0)):
             view = camera.replace(shutter_opens_s=opens_s, exposure_time_s=exposure_s, readout_time_s=readout_s)
             middle_s = opens_s + (exposure_s + (0 if effects else readout_s)) / 2
             session.set(camera=view)
