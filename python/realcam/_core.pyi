@@ -2944,14 +2944,16 @@ class Scene:
         scale: float = 1.0,
         objects: Sequence[str] = list(),
         variants: Sequence[str] = list(),
+        scene_name: str = "",
     ) -> Scene:
         """
-        load(path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = [], variants: Sequence[str] = []) -> Scene
+        load(path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = [], variants: Sequence[str] = [], scene_name: str = '') -> Scene
 
         Reads a scene file: .obj (with its .mtl), .gltf, .glb, .ply, or a stage of USD (.usd, .usda, .usdc
         or .usdz; realcam[usd]).
         scale: metres per unit of the file; for a stage, a factor on its metersPerUnit.
         variants: variants of a stage, such as "/Chair{color=red}".
+        scene_name: name or index of a scene in a glTF file; "": the file's own.
         objects: names of nodes (in an OBJ file: of "o" or "g" statements) that become instances, with all their descendants,
           so that moved() can move them. The second of several nodes "car" is called "car.2".
         Minor faults of the file are listed in warnings. Only regular files are read. Raises SceneFileError, and
