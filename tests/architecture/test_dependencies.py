@@ -50,7 +50,7 @@ ORDER = {
         "sensor",
     ),
     "scene": ("", "textures", "geometry", "materials", "lights", "render_space"),
-    "render": ("path", "layers", "settings", "ghosts", "lights", "film", "framing", "session"),
+    "render": ("path", "layers", "settings", "ghosts", "lights", "film", "gradients", "framing", "session"),
     "cuda": ("device", "kernels", "session", "rays", ""),
     "bindings": ("bindings.hpp typed_object.hpp unlocked.*", "values", "lens", "camera", "scene", "pictures", ""),
     "optics": ("prescription", "trace", "coating", "pupil", "lens", "ghost", "analysis", "derivatives", "tolerance"),

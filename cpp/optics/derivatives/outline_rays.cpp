@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../../math/hypotenuse.hpp"
 #include "../trace/open_iris.hpp"
 
 namespace realcam {
@@ -26,7 +27,7 @@ OutlineRays::OutlineRays(const LensSystem& lens, double wavelength_nm)
 }
 
 OutlineRays::Edge OutlineRays::edge_at(const SurfaceView<double>& surface, Vec2d at) const {
-    const double radius = std::hypot(at.x, at.y);
+    const double radius = hypotenuse(at.x, at.y);
     const Vec2d outwards = radius > 0 ? Vec2d{at.x / radius, at.y / radius} : Vec2d{1, 0};
     const bool is_stop = surface.surface_index == stop_index_;
     Edge edge{std::sqrt(surface.rim_squared) - radius, outwards, is_stop && stop_is_rim_ ? 1.0 : 0.0};
@@ -46,7 +47,7 @@ OutlineRays::Edge OutlineRays::edge_at(const SurfaceView<double>& surface, Vec2d
     const double h = iris.apothem, q = iris.curvature, bend = 2 * (1 - q * h);
     const double f = q * (radius * radius + h * h) + bend * extent - 2 * h;
     const Vec2d gradient = {2 * q * at.x + bend * iris.cos[blade], 2 * q * at.y + bend * iris.sin[blade]};
-    const double inverse = 1 / std::hypot(gradient.x, gradient.y), distance = -f * inverse;
+    const double inverse = 1 / hypotenuse(gradient.x, gradient.y), distance = -f * inverse;
     if (distance >= edge.distance) return edge;
     const double f_rate = curvature_rate_ * (radius * radius + h * h) + 2 * q * h * apothem_rate_ -
                           2 * (curvature_rate_ * h + q * apothem_rate_) * extent - 2 * apothem_rate_;
