@@ -12,8 +12,8 @@ RTCDevice new_embree_device() {
     if (device) return device;
     const RTCError code = rtcGetDeviceError(nullptr);
     throw DeviceError("Embree could not be started: " + (code == RTC_ERROR_OUT_OF_MEMORY
-                                                              ? std::string("out of memory")
-                                                              : "error " + std::to_string(code)));
+                                                             ? std::string("out of memory")
+                                                             : "error " + std::to_string(code)));
 }
 
 void EmbreeScene::check() const {

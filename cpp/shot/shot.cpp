@@ -283,11 +283,11 @@ Assembly completed(const ShotRequest& request, Assembly scene, const PictureRead
 
 Assembly scene_of(const ShotRequest& request, const PictureReaders& file_readers, const KeepGoing& keep_going) {
     const PictureReaders readers = with_color_spaces(request.ocio, file_readers);
-    return completed(request,
-                     io::read_scene(request.scene,
-                                    {request.scale, {}, keep_going, request.variants, request.scene_name},
-                                    readers.texture),
-                     readers, keep_going);
+    return completed(
+        request,
+        io::read_scene(request.scene, {request.scale, {}, keep_going, request.variants, request.scene_name},
+                       readers.texture),
+        readers, keep_going);
 }
 
 Assembly scene_of(const ShotRequest& request, Assembly scene, const PictureReaders& readers,
