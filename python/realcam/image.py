@@ -138,9 +138,9 @@ class Image(PickledByFields):
         metres, and all layers).
 
         tone: see Image.developed. exr_color_space: of the colours in .exr files, "rec709" or "acescg", both linear;
-        None: the image's. Lens, f-number, focus, exposure time, ISO, seed and version are in the file's metadata. Raises
-        ImageFileError; no half-written file is left. Existing files are replaced, even those that the scene was read
-        from.
+        None: the image's. Lens, f-number, focus, exposure time, ISO, seed and version are in the file's metadata.
+        Raises ImageFileError; no half-written file is left. Existing files are replaced, even those that the scene was
+        read from.
         """
         _core._write_picture(
             system_name(path),
