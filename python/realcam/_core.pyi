@@ -2218,7 +2218,8 @@ class CalibratedGeometry:
         """
         film: the Film, of which only size and shift count.
         directions: (rows + 1, columns + 1, 3), unit vectors in the axes of the camera, x right, y up, z backward, at nodes in
-          uniform steps over the picture and, on every side, `margin` times its size; from the upper left corner.
+          uniform steps over the picture and, on every side, `margin` times its size; from the upper left corner. NaN where the
+          calibration has no ray: these directions are extrapolated.
         gain: (rows + 1, columns + 1), factors of the irradiance. None: 1.
         defined: (mask rows, mask columns), False where the calibration has no ray. None: True.
         positions: (side, side, 2), picture coordinates, from (0, 0) at the upper left corner to (1, 1), of the direction at an
@@ -3109,8 +3110,8 @@ class RenderSettings:
     """
     Settings of a picture, for rc.render, rc.Session, rc.LiveView, rc.plan and rc.Shot. Immutable.
 
-    spp: Samples per pixel, or auto: by tile of the film, until the noise goal is reached, by default 1 code [until the
-      noise is 2 codes, for 60 seconds at most]. A tile has 16 x 16 pixels (docs/sampling.md).
+    spp: Samples per pixel, or auto: by tile of the film, until the noise goal is reached, by default 1 code [64]. A tile
+      has 16 x 16 pixels (docs/sampling.md).
     noise: Noise goal, unless spp is a number: relative to a tile's light, such as 0.01. It is the RMS error of the tile's
       pixels as a fraction of their mean, or of a hundredth of white if that is larger.
     noise_codes: The same noise goal in 8-bit codes of the picture with the linear tone curve, under every view.
@@ -3149,8 +3150,8 @@ class RenderSettings:
       alone: samples from the lights; off: samples of pixels, which never hit point lights and suns.
     threads: Number of threads; 0: all [0].
 
-    Spectra are texts as attributes, and may be (wavelength_nm, value) pairs as arguments. The default of spp is 64, and
-    seconds has none: a shot has other defaults than functions. Raises InputError.
+    Spectra are texts as attributes, and may be (wavelength_nm, value) pairs as arguments. In a shot, the default of spp
+    is auto, and seconds has one (docs/shot-files.md). Raises InputError.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
@@ -3250,7 +3251,7 @@ class RenderSettings:
     @property
     def spp(self) -> int | Literal["auto"]:
         """
-        Samples per pixel, or auto: by tile of the film, until the noise goal is reached, by default 1 code [until the noise is 2 codes, for 60 seconds at most]. A tile has 16 x 16 pixels (docs/sampling.md).
+        Samples per pixel, or auto: by tile of the film, until the noise goal is reached, by default 1 code [64]. A tile has 16 x 16 pixels (docs/sampling.md).
         """
     @property
     def threads(self) -> int:

@@ -37,9 +37,12 @@ def packed(about: Any, arrays: Mapping[str, np.ndarray], *, owner: str = "", is_
     return unsigned + hashlib.sha256(unsigned).hexdigest().encode()
 
 
-def write_archive(path: str | os.PathLike[str], content: bytes) -> None:
-    """Writes packed content completely or not at all, also if the machine loses power. Raises ImageFileError."""
-    write_whole(path, content, is_durable=True)
+def write_archive(path: str | os.PathLike[str], content: bytes, *, replaces: bool = True) -> None:
+    """Writes packed content completely or not at all, also if the machine loses power. Raises ImageFileError.
+
+    replaces: if False, an existing file is left unchanged.
+    """
+    write_whole(path, content, replaces=replaces, is_durable=True)
 
 
 def digest_of(content: bytes) -> str:

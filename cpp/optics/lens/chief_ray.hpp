@@ -83,7 +83,7 @@ public:
 
 private:
     const RaysFromFilm& rays_;
-    double cosine_ = 0, change_ = 0;  ///< of the last ray's y at the film, and its difference from the ray before
+    double cosine_ = 0, change_ = 0;  ///< y of the last ray at the film, and its change from the ray before
 };
 
 /// Finds the chief ray at a field angle: in the y-z plane of the camera, at `angle_rad` to its z axis; for positive

@@ -218,7 +218,7 @@ class Worker:
             content = self._expose(unit).packed(self.folder.id)
             if not self.folder.is_current():
                 raise InputError(f"{self.folder.path}: the job was replaced while this process worked on it")
-            write_archive(path, content)
+            write_archive(path, content, replaces=False)  # another process may have written it meanwhile
         except OSError as error:
             raise InputError(f"{self.folder.path}: {error.strerror or error}") from None
 

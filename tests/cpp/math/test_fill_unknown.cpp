@@ -18,7 +18,7 @@ double height(int column, int row) {
     return 1 + 2 * column - 3 * row;
 }
 
-/// Plane of which only the columns from `first` to `last` are known.
+/// Returns a plane whose known columns are `first` to `last`.
 Nodes plane(int first, int last) {
     Nodes nodes;
     for (int row = 0; row < kRows; ++row)

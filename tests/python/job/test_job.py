@@ -21,7 +21,9 @@ import numpy as np
 import pytest
 import realcam as rc
 from realcam import archive
-from realcam.job.folder import FORMAT
+from realcam.job.folder import FORMAT, JobFolder
+from realcam.job.units import Unit
+from realcam.job.worker import Worker
 
 from ..programs import Command
 from .job_programs import picture, run, shot, started, units
@@ -90,6 +92,28 @@ def test_processes_that_are_killed_lose_only_what_they_have_in_hand(tmp_path: Pa
         assert (worker.returncode, errors) == (0, "")
     assert kept.items() <= units(folder).items()  # nothing that was done was done again
     assert job.image() == picture(shot(400))
+
+
+def test_the_first_of_two_processes_that_render_a_unit_writes_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "job"
+    made(folder, lamp=shot(4))
+    first, second = (Worker(JobFolder.open(folder)) for _ in range(2))
+    expose, written = second._expose, list[dict[str, tuple[int, int]]]()
+
+    def expose_slowly(unit: Unit) -> object:
+        part = expose(unit)
+        first.run(unit)
+        written.append(units(folder))
+        return part
+
+    monkeypatch.setattr(second, "_expose", expose_slowly)
+    missing = second.missing(0)
+    assert missing is not None
+    second.run(missing[1][0])
+    assert [units(folder)] == written
+    assert not list(folder.rglob(".realcam-*"))
 
 
 @pytest.mark.slow
