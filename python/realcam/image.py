@@ -137,10 +137,10 @@ class Image(PickledByFields):
         """Writes .png, .jpg, .tif, .webp (developed) or .exr (film exposure R, G, B in lux seconds, depth as Z in
         metres, and all layers).
 
-        tone: see Image.developed. exr_color_space: of the colours in .exr files, "rec709" or "acescg", both linear; None:
-        the image's. Lens, f-number, focus, exposure time, ISO, seed and version are in the file's metadata. Raises
-        ImageFileError; no half-written file is left. Existing files are replaced, even those that the scene was read
-        from.
+        tone: see Image.developed. exr_color_space: of the colours in .exr files, "rec709" or "acescg", both linear;
+        None: the image's. Lens, f-number, focus, exposure time, ISO, seed and version are in the file's metadata.
+        Raises ImageFileError; no half-written file is left. Existing files are replaced, even those that the scene was
+        read from.
         """
         _core._write_picture(
             system_name(path),
