@@ -81,15 +81,17 @@ def changed(camera: rc.Camera, parameter: str, step: float) -> rc.Camera:
     return camera.replace(lens=lens.stopped_down(lens.f_number + step))
 
 
+# Steps move the light on the film by at most 0.06 pixels: with an adjoint that is independent from pixel to pixel, the
+# error of a difference is about (3 x step in pixels)^2 / 6 of it, 0.5%.
 STEPS = {
     "right_m": 2e-4,
     "up_m": 2e-4,
     "backward_m": 1e-3,
-    "pitch_deg": 0.02,
-    "yaw_deg": 0.02,
-    "roll_deg": 0.1,
-    "film_shift_right_mm": 0.02,
-    "film_shift_up_mm": 0.02,
+    "pitch_deg": 0.005,
+    "yaw_deg": 0.005,
+    "roll_deg": 0.02,
+    "film_shift_right_mm": 0.005,
+    "film_shift_up_mm": 0.005,
     "focus_distance_m": 0.05,
     "f_number": 0.05,
 }
