@@ -3464,6 +3464,70 @@ def _name_cuda_plugin(path: bytes) -> None:
     Internal. Sets the path of the CUDA plug-in, which is loaded when a GPU is first used.
     """
 
+@final
+class _PictureGradient:
+    """
+    Internal: use realcam.render_gradient.
+    """
+    def __init__(
+        self,
+        scene: Scene,
+        camera: Camera,
+        settings: RenderSettings,
+        filter: str,
+        variables: Sequence[tuple[str, int, int, int]],
+    ) -> None:
+        """
+        Prepares derivatives of a picture. filter: "tent" or "gaussian". variables: see Lens._ray_derivatives.
+        The numbers of a camera are, in this order: the variables; translation (mm) and rotation (rad) of the film about its
+        centre relative to the camera, along the film's axes; translation and rotation of the camera, along the camera's axes;
+        and the radius of the diaphragm (mm).
+        """
+    def forward(
+        self,
+        directions: ArrayLike,
+        control: ArrayLike | None,
+        *,
+        seed: int,
+        spp: int,
+        outline_spp: int,
+        terms: str = "both",
+        uniform: bool = False,
+    ) -> NDArray[np.float32]:
+        """
+        Returns the derivatives of the picture along directions (P, N) of the numbers, (P, H, W, 3).
+        """
+    def picture(self, *, seed: int, spp: int, uniform: bool = False) -> NDArray[np.float32]:
+        """
+        Returns the picture with the filter, (H, W, 3), in lux seconds. uniform: of uniform light of radiance 1.
+        """
+    def reverse(
+        self,
+        adjoint: ArrayLike,
+        control: ArrayLike | None,
+        *,
+        seed: int,
+        spp: int,
+        outline_spp: int,
+        terms: str = "both",
+        uniform: bool = False,
+    ) -> NDArray[np.float64]:
+        """
+        Returns the derivatives of sum(adjoint * picture) by all numbers of the camera, (N,).
+        adjoint: (H, W, 3). control: control variate of the radiance, (H, W, 3), or None; the derivatives are then those of
+        picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests.
+        """
+    @property
+    def number_count(self) -> int:
+        """
+        Number of numbers of the camera, N.
+        """
+    @property
+    def unexplained_edges(self) -> tuple[int, int]:
+        """
+        Edges of the pupil that no rim explains, and lines on which edges were sought, in the last call of reverse.
+        """
+
 def _number_text(value: float, digits: int) -> str:
     """
     Internal. Formats a number with this number of significant digits.

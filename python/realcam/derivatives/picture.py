@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -60,7 +60,8 @@ class _Numbers:
         """(P,): True for parameters that change more than the camera's pose."""
         first = len(self.variables) + _POSE
         others = np.delete(self.directions, np.s_[first : first + 6], axis=1)
-        return np.any(others != 0, axis=1)
+        changes: NDArray[np.bool_] = np.any(others != 0, axis=1)
+        return changes
 
 
 def render_gradient(
@@ -90,7 +91,7 @@ def render_gradient(
     filter: pixel filter of the picture, "tent" (two pixels wide) or "gaussian" (three pixels wide, standard deviation
       half a pixel); the box, whose derivative has no finite variance, is refused.
     outline_spp: samples per pixel on the outline of the pupil, by default spp / 4. control_spp: samples per pixel, of
-      other random numbers, of a first picture that serves as control variate, by default spp / 4; 0: none.
+      other random numbers, of a first picture that serves as control variate for the pose, by default spp / 4; 0: none.
     settings, changes: settings of rc.render; the samples on the film are those of rc.render with the same seed.
       Derivatives take no noise goal, and no effect but dispersion. They trace no lights, so that the images of point
       lights and suns themselves are missing.
@@ -107,16 +108,23 @@ def render_gradient(
     )
     spp = _spp_of(final)
     control_count = max(1, spp // 4) if control_spp is None else control_spp
-    samples = {"seed": final.seed, "spp": spp, "outline_spp": max(1, spp // 4) if outline_spp is None else outline_spp}
-    control = _control(of_picture, final.seed, control_count) if control_count > 0 else None
-    even = {**samples, "seed": _other_seed(final.seed, 2), "uniform": True}
+    samples: dict[str, Any] = {
+        "seed": final.seed,
+        "spp": spp,
+        "outline_spp": max(1, spp // 4) if outline_spp is None else outline_spp,
+    }
+    # The derivative of uniform light by the pose is 0. For all other parameters it is added, from the same samples, and
+    # cancels the control variate.
+    uses_control = control_count > 0 and not numbers.moves_lens.all()
+    control = _control(of_picture, final.seed, control_count) if uses_control else None
+    even: dict[str, Any] = {**samples, "uniform": True}
     if adjoint is not None:
         of_pixels = np.asarray(adjoint, np.float32)
-        gradient = numbers.directions @ of_picture.reverse(of_pixels, control, **samples)
+        gradient: Doubles = numbers.directions @ of_picture.reverse(of_pixels, control, **samples)
         if control is not None and numbers.moves_lens.any():
             of_light = np.zeros_like(of_pixels)
             of_light[..., 0] = (of_pixels * control).sum(-1)
-            by_even = numbers.directions @ of_picture.reverse(of_light, None, **even)
+            by_even: Doubles = numbers.directions @ of_picture.reverse(of_light, None, **even)
             gradient += np.where(numbers.moves_lens, by_even, 0.0)
         return gradient
     pictures = of_picture.forward(numbers.directions, control, **samples)
@@ -158,14 +166,9 @@ def _spp_of(settings: RenderSettings) -> int:
     return settings.spp
 
 
-def _other_seed(seed: int, which: int) -> int:
-    """A seed for random numbers that are independent of those of `seed`."""
-    return (seed + which * 0x9E3779B9) % 2**32
-
-
 def _control(of_picture: _core._PictureGradient, seed: int, spp: int) -> Floats:
     """Mean radiance of the light of each pixel and channel, from samples of their own."""
-    samples = {"seed": _other_seed(seed, 1), "spp": spp}
+    samples: dict[str, Any] = {"seed": (seed + 0x9E3779B9) % 2**32, "spp": spp}
     even = of_picture.picture(**samples, uniform=True)
     return np.where(even > 0, of_picture.picture(**samples) / np.where(even > 0, even, 1), 0)
 

@@ -81,15 +81,17 @@ def changed(camera: rc.Camera, parameter: str, step: float) -> rc.Camera:
     return camera.replace(lens=lens.stopped_down(lens.f_number + step))
 
 
+# Steps move the light on the film by at most 0.06 pixels: with an adjoint that is independent from pixel to pixel, the
+# error of a difference is about (3 x step in pixels)^2 / 6 of it, 0.5%.
 STEPS = {
     "right_m": 2e-4,
     "up_m": 2e-4,
     "backward_m": 1e-3,
-    "pitch_deg": 0.02,
-    "yaw_deg": 0.02,
-    "roll_deg": 0.1,
-    "film_shift_right_mm": 0.02,
-    "film_shift_up_mm": 0.02,
+    "pitch_deg": 0.005,
+    "yaw_deg": 0.005,
+    "roll_deg": 0.02,
+    "film_shift_right_mm": 0.005,
+    "film_shift_up_mm": 0.005,
     "focus_distance_m": 0.05,
     "f_number": 0.05,
 }
@@ -172,8 +174,9 @@ def test_filtered_picture_is_the_tent_of_a_finer_picture() -> None:
 
     wanted, wanted_error = estimate(coarse)
     found, error = estimate(lambda seed: rc.render_filtered(scene, camera, spp=128, seed=seed, max_bounces=0))
-    # The midpoints of 32 fine pixels integrate the tent to 1e-3.
-    assert np.all(np.abs(found - wanted) < ERRORS * np.hypot(error, wanted_error) + 1e-3 * wanted)
+    # The midpoints of 32 fine pixels integrate the tent to 1e-3. Pixels behind the edge are black.
+    assert np.all(np.abs(found - wanted) <= ERRORS * np.hypot(error, wanted_error) + 1e-3 * wanted)
+    assert np.count_nonzero(wanted) > 50
 
 
 @pytest.mark.parametrize(
