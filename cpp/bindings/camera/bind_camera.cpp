@@ -271,7 +271,7 @@ coefficients: (terms, 3, 2): a and b of position, direction and stop point a x +
   (x.p)^k with i + j + k <= degree, of which i changes slowest and k fastest.
 heights: (terms, 2): z of position and direction. None: positions lie at z = plane_mm, directions are unit vectors.
 discs: (discs, 4, 2): a and b of points a x + b p, for the monomials 1, x.p, p.p, x.x; a ray passes if all lie inside the
-  unit circle. The first disc is that of the stop.
+  unit circle.
 Raises InputError.)")
         .def("trace", &trace_ray_pairs, "film_mm"_a, "last_mm"_a,
              R"(Returns (origins_mm, directions, passed), (N, 3), (N, 3) and (N,), of the rays in front of the lens.
