@@ -73,6 +73,7 @@ inline void plan_bounces(Session& session, const Assembly& scene, Camera camera,
     if (const LensSystem on_axis = centred(camera.lens); on_axis.is_rotational()) {
         camera.lens = on_axis;
         camera.model = CameraModel::pinhole;
+        camera.ray_pairs = nullptr;
     }
     settings.spp = kSamples;
     settings.noise.reset();

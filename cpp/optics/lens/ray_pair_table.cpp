@@ -104,6 +104,9 @@ void validate(const RayPairTable& table) {
         !is_length(table.last_radius) || !is_length(table.film_width) || !is_length(table.film_height) ||
         !(std::fabs(table.plane) <= kLongest) || !(table.wavelength_nm >= 100 && table.wavelength_nm <= 20000))
         throw InputError("the ray pairs' lengths must be positive, up to 1e9 mm, and wavelengths 100 to 20000 nm");
+    if (!(table.focus_distance > table.length + table.film_distance))
+        throw InputError(
+            "the focus distance of the ray pairs must be larger than that from the front vertex to the film");
     if (table.degree < 0 || table.degree > RayPairTable::kMaxDegree)
         throw InputError("the degree of the ray pairs' polynomials must lie between 0 and 8");
     const std::size_t terms = monomial_count(table.degree);
@@ -157,9 +160,7 @@ LensSystem paraxial_lens(const RayPairTable& table) {
     lens.film_distance = F;
     lens.stop_semi_diameter = stop_radius;
     lens.allow_overlap = true;
-    const double object = -height[1] / slope[1];  // z at which rays from the film's centre cross the axis again
-    constexpr double kFar = -1e7;
-    lens.focus_distance = object < 0 && object > kFar ? L + F - object : kInfinity;
+    lens.focus_distance = table.focus_distance;
     add_element(lens, first, table.last_radius, to_stop);
     Surface stop;
     stop.type = SurfaceType::stop;

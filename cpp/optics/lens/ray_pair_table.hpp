@@ -18,6 +18,7 @@ struct RayPairTable {
     double wavelength_nm = 0;
     double length = 0;  ///< front vertex to last vertex
     double film_distance = 0;  ///< last vertex to film
+    double focus_distance = kInfinity;  ///< object plane in focus to film
     double film_width = 0, film_height = 0;
     double film_radius = 0;  ///< radius of the part of the film with light, from the axis; scale of film points
     double last_radius = 0;  ///< radius of the measured disc in the plane of the last vertex; scale of its points
