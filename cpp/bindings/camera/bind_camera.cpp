@@ -200,8 +200,9 @@ void require_shape(const py::array& array, int dimensions, int parts, const char
 }
 
 std::shared_ptr<RayPairTable> make_ray_pairs(const std::string& name, double wavelength_nm, double length_mm,
-                                             double film_distance_mm, std::pair<double, double> film_mm,
-                                             double film_radius_mm, double last_radius_mm, double plane_mm, int degree,
+                                             double film_distance_mm, double focus_distance_m,
+                                             std::pair<double, double> film_mm, double film_radius_mm,
+                                             double last_radius_mm, double plane_mm, int degree,
                                              const InputArray<float>& coefficients,
                                              const std::optional<InputArray<float>>& heights,
                                              const InputArray<float>& discs) {
@@ -209,6 +210,7 @@ std::shared_ptr<RayPairTable> make_ray_pairs(const std::string& name, double wav
                        wavelength_nm,
                        length_mm,
                        film_distance_mm,
+                       1000 * focus_distance_m,
                        film_mm.first,
                        film_mm.second,
                        film_radius_mm,
@@ -262,9 +264,10 @@ void bind_ray_pairs(py::module_& m) {
     def_value(table);
     table
         .def(py::init(&make_ray_pairs), py::kw_only(), "name"_a, "wavelength_nm"_a, "length_mm"_a, "film_distance_mm"_a,
-             "film_mm"_a, "film_radius_mm"_a, "last_radius_mm"_a, "plane_mm"_a, "degree"_a, "coefficients"_a,
-             "heights"_a = py::none(), "discs"_a,
+             "focus_distance_m"_a, "film_mm"_a, "film_radius_mm"_a, "last_radius_mm"_a, "plane_mm"_a, "degree"_a,
+             "coefficients"_a, "heights"_a = py::none(), "discs"_a,
              R"(length_mm: from the front vertex (z = 0) to the last vertex. film_distance_mm: from there to the film.
+focus_distance_m: distance of the plane in focus from the film.
 film_mm: (width, height) of the film that a Camera uses by default.
 film_radius_mm, last_radius_mm: scales of film points x and of points p in the plane of the last vertex; no light beyond.
 coefficients: (terms, 3, 2): a and b of position, direction and stop point a x + b p, for the monomials (x.x)^i (p.p)^j

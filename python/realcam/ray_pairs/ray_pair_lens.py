@@ -52,7 +52,7 @@ class RayPairLens:
     """A lens that is known by rays alone, as of a confidential design: a map from rays at the film to the scene.
 
     It holds for the f-number, focus and zoom position of its rays; another stop needs rays and a fit of its own. What
-    needs surfaces does not work with it: ghosts, diffraction, coatings, dispersion within one picture, the planner.
+    needs surfaces does not work with it: ghosts, diffraction, coatings, dispersion within one picture; the planner leaves effects out.
 
     Wavelengths: each coefficient is a polynomial of 1 / (wavelength - 200 nm) through those of the measured wavelengths
     (a least-squares cubic if there are more than four). Beyond the shortest and the longest one, InputError is raised.
@@ -162,6 +162,7 @@ class RayPairLens:
             wavelength_nm=self._checked(wavelength_nm),
             length_mm=self._last_z_mm - self._front_z_mm,
             film_distance_mm=self._film_z_mm - self._last_z_mm,
+            focus_distance_m=self.focus_distance_m,
             film_mm=self.film_mm,
             film_radius_mm=self.fit_report.light_radius_mm,
             last_radius_mm=self._last_radius_mm,
