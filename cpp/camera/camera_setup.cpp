@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "../math/hypotenuse.hpp"
 #include "../math/motion.hpp"
 #include "../optics/lens/exposure.hpp"
 #include "effects/direct_lens_path.hpp"
@@ -71,7 +72,7 @@ CircleOfConfusion circle_of_confusion(double entrance_pupil_position, ThinLens t
 }
 
 /// Tracer of the pupil search for a camera with ray pairs. Rays that the search sends only to the stop arrive at the
-/// point of the stop's disc.
+/// point of the disc in which they lie farthest outside, so that light passes where they arrive inside the stop.
 PupilTracer ray_pair_tracer(const Camera& camera, PupilTracer tracer) {
     const auto table = camera.ray_pairs;
     const auto distance = static_cast<float>(table->film_distance),
@@ -83,11 +84,14 @@ PupilTracer ray_pair_tracer(const Camera& camera, PupilTracer tracer) {
         for (int i = 0; i < PupilTracer::kBlock; ++i) {
             const Vec3f film = rays.origin[i], direction = rays.direction[i];
             const float along = distance / direction.z;
-            const Vec2f point =
-                disc_point(view, 0,
-                           LensPolynomialArguments<float>(
-                               view, {film.x, film.y}, {film.x - along * direction.x, film.y - along * direction.y}));
-            rays.origin.set(i, {stop_radius * point.x, stop_radius * point.y, 0});
+            const LensPolynomialArguments<float> at(view, {film.x, film.y},
+                                                    {film.x - along * direction.x, film.y - along * direction.y});
+            Vec2f farthest = {0, 0};
+            for (int disc = 0; disc < view.disc_count; ++disc) {
+                const Vec2f point = disc_point(view, disc, at);
+                if (hypotenuse(point.x, point.y) > hypotenuse(farthest.x, farthest.y)) farthest = point;
+            }
+            rays.origin.set(i, {stop_radius * farthest.x, stop_radius * farthest.y, 0});
         }
     };
     return tracer;

@@ -19,13 +19,12 @@ namespace REALCAM_NAMESPACE {
 inline Plan make_plan(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                       bool measures_times, const PupilTracer& tracer, const Progress& progress = {}) {
     validate(settings);
-    if (!settings.effects.is_automatic) {
-        Plan plan{camera.model, settings.effects, {}, {}};
+    // Effects of a lens whose surfaces are unknown cannot be estimated.
+    if (!settings.effects.is_automatic || camera.ray_pairs) {
+        Plan plan{camera.model, without_plan(settings.effects), {}, {}};
         plan_bounces(session, scene, camera, settings, plan, progress);
         return plan;
     }
-    if (camera.ray_pairs)
-        throw InputError("effects: \"auto\" needs the surfaces of the lens, of which only rays were measured");
     // Errors and effects are estimated for the centred lens, because tilts change them little.
     Camera full = camera;
     full.lens = centred(camera.lens);

@@ -66,6 +66,7 @@ struct SmallShot {
         if (const LensSystem on_axis = centred(camera.lens); on_axis.is_rotational()) {
             camera.lens = on_axis;
             camera.model = CameraModel::pinhole;
+            camera.ray_pairs = nullptr;
         }
         settings.spp = kSamples;
         settings.noise.reset();

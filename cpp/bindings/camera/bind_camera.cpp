@@ -214,8 +214,9 @@ std::vector<Vec3d> extrapolated_directions(const InputArray<double>& directions)
 }
 
 std::shared_ptr<RayPairTable> make_ray_pairs(const std::string& name, double wavelength_nm, double length_mm,
-                                             double film_distance_mm, std::pair<double, double> film_mm,
-                                             double film_radius_mm, double last_radius_mm, double plane_mm, int degree,
+                                             double film_distance_mm, double focus_distance_m,
+                                             std::pair<double, double> film_mm, double film_radius_mm,
+                                             double last_radius_mm, double plane_mm, int degree,
                                              const InputArray<float>& coefficients,
                                              const std::optional<InputArray<float>>& heights,
                                              const InputArray<float>& discs) {
@@ -223,6 +224,7 @@ std::shared_ptr<RayPairTable> make_ray_pairs(const std::string& name, double wav
                        wavelength_nm,
                        length_mm,
                        film_distance_mm,
+                       1000 * focus_distance_m,
                        film_mm.first,
                        film_mm.second,
                        film_radius_mm,
@@ -276,16 +278,17 @@ void bind_ray_pairs(py::module_& m) {
     def_value(table);
     table
         .def(py::init(&make_ray_pairs), py::kw_only(), "name"_a, "wavelength_nm"_a, "length_mm"_a, "film_distance_mm"_a,
-             "film_mm"_a, "film_radius_mm"_a, "last_radius_mm"_a, "plane_mm"_a, "degree"_a, "coefficients"_a,
-             "heights"_a = py::none(), "discs"_a,
+             "focus_distance_m"_a, "film_mm"_a, "film_radius_mm"_a, "last_radius_mm"_a, "plane_mm"_a, "degree"_a,
+             "coefficients"_a, "heights"_a = py::none(), "discs"_a,
              R"(length_mm: from the front vertex (z = 0) to the last vertex. film_distance_mm: from there to the film.
+focus_distance_m: distance of the plane in focus from the film.
 film_mm: (width, height) of the film that a Camera uses by default.
 film_radius_mm, last_radius_mm: scales of film points x and of points p in the plane of the last vertex; no light beyond.
 coefficients: (terms, 3, 2): a and b of position, direction and stop point a x + b p, for the monomials (x.x)^i (p.p)^j
   (x.p)^k with i + j + k <= degree, of which i changes slowest and k fastest.
 heights: (terms, 2): z of position and direction. None: positions lie at z = plane_mm, directions are unit vectors.
 discs: (discs, 4, 2): a and b of points a x + b p, for the monomials 1, x.p, p.p, x.x; a ray passes if all lie inside the
-  unit circle. The first disc is that of the stop.
+  unit circle.
 Raises InputError.)")
         .def("trace", &trace_ray_pairs, "film_mm"_a, "last_mm"_a,
              R"(Returns (origins_mm, directions, passed), (N, 3), (N, 3) and (N,), of the rays in front of the lens.

@@ -22,11 +22,42 @@ bool are_finite(const std::vector<float>& numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); });
 }
 
-/// Point of the plane of the last vertex, per mm of film height, through which the ray near the axis passes the centre
-/// of the stop.
+/// Points of the plane of the last vertex between which light from a film point on the x axis passes, on the x axis
+/// too, mm. Both are 0 if no light passes.
+struct LightInterval {
+    double low = 0, high = 0;
+
+    double centre() const { return 0.5 * (low + high); }
+};
+
+LightInterval meridional_light(const RayPairTable& table, double film_x) {
+    constexpr int kSteps = 1024, kHalvings = 40;
+    const LensPolynomialView view = table.view();
+    const auto passes = [&](double last_x) {
+        const LensPolynomialArguments<double> at(view, {film_x, 0}, {last_x, 0});
+        bool inside = std::fabs(last_x) <= table.last_radius;
+        for (int disc = 0; disc < view.disc_count; ++disc) inside &= std::fabs(disc_point(view, disc, at).x) <= 1;
+        return inside;
+    };
+    const auto point = [&](int step) { return table.last_radius * (2.0 * step / kSteps - 1); };
+    int first = 0, last = kSteps;
+    while (first <= kSteps && !passes(point(first))) ++first;
+    if (first > kSteps) return {};
+    while (!passes(point(last))) --last;
+    const auto edge = [&](double inside, double outside) {
+        for (int i = 0; i < kHalvings; ++i) {
+            const double middle = 0.5 * (inside + outside);
+            (passes(middle) ? inside : outside) = middle;
+        }
+        return inside;
+    };
+    return {edge(point(first), point(first - 1)), edge(point(last), point(last + 1))};
+}
+
+/// Point of the plane of the last vertex, per mm of film height, through which the chief ray near the axis passes.
 double chief_slope(const RayPairTable& table) {
-    return -static_cast<double>(table.discs[0]) / static_cast<double>(table.discs[1]) * table.last_radius /
-           table.film_radius;
+    const double film_x = 0.02 * table.film_radius;
+    return meridional_light(table, film_x).centre() / film_x;
 }
 
 /// Thin plano-convex element whose plane face is behind its curved one. A paraboloid has a sag at any radius.
@@ -62,12 +93,8 @@ LensPolynomialView RayPairTable::view() const {
 double RayPairTable::field_angle(double film_height) const {
     const LensPolynomialView view = this->view();
     const double x = std::min(film_height, film_radius);
-    const auto at = [&](double last) { return LensPolynomialArguments<double>(view, {x, 0}, {last, 0}); };
-    // Fixed-point iteration: pupil aberrations are a small part of the stop's size.
-    double last = chief_slope(*this) * x;
-    for (int i = 0; i < 20; ++i) last -= disc_point(view, 0, at(last)).x * last_radius / static_cast<double>(discs[1]);
-    if (!(std::fabs(last) <= last_radius)) last = std::clamp(chief_slope(*this) * x, -last_radius, last_radius);
-    const Vec3d direction = evaluate(view, at(last)).direction;
+    const LensPolynomialArguments<double> at(view, {x, 0}, {meridional_light(*this, x).centre(), 0});
+    const Vec3d direction = evaluate(view, at).direction;
     return std::atan2(std::fabs(direction.x), -direction.z);
 }
 
@@ -77,6 +104,9 @@ void validate(const RayPairTable& table) {
         !is_length(table.last_radius) || !is_length(table.film_width) || !is_length(table.film_height) ||
         !(std::fabs(table.plane) <= kLongest) || !(table.wavelength_nm >= 100 && table.wavelength_nm <= 20000))
         throw InputError("the ray pairs' lengths must be positive, up to 1e9 mm, and wavelengths 100 to 20000 nm");
+    if (!(table.focus_distance > table.length + table.film_distance))
+        throw InputError(
+            "the focus distance of the ray pairs must be larger than that from the front vertex to the film");
     if (table.degree < 0 || table.degree > RayPairTable::kMaxDegree)
         throw InputError("the degree of the ray pairs' polynomials must lie between 0 and 8");
     const std::size_t terms = monomial_count(table.degree);
@@ -114,7 +144,7 @@ LensSystem paraxial_lens(const RayPairTable& table) {
     const double to_stop = L / (B / pupil + 1 - A), behind = L - to_stop;
     const double middle = (L - B) / (to_stop * behind), first = (1 - behind * middle - A) / B,
                  last = (1 - to_stop * middle - D) / B;
-    const double rim = std::fabs(table.last_radius / static_cast<double>(table.discs[1]));
+    const double rim = meridional_light(table, 0).high;
     const double stop_radius = std::fabs(rim - behind * (last * rim - rim / F));
     const bool is_lens = std::fabs(determinant - 1) < 0.02 && to_stop > 0 && behind > 0 && stop_radius > 0 &&
                          std::isfinite(first) && std::isfinite(middle) && std::isfinite(last) && std::isfinite(rim);
@@ -130,9 +160,7 @@ LensSystem paraxial_lens(const RayPairTable& table) {
     lens.film_distance = F;
     lens.stop_semi_diameter = stop_radius;
     lens.allow_overlap = true;
-    const double object = -height[1] / slope[1];  // z at which rays from the film's centre cross the axis again
-    constexpr double kFar = -1e7;
-    lens.focus_distance = object < 0 && object > kFar ? L + F - object : kInfinity;
+    lens.focus_distance = table.focus_distance;
     add_element(lens, first, table.last_radius, to_stop);
     Surface stop;
     stop.type = SurfaceType::stop;

@@ -25,15 +25,16 @@ _MOST_START_RAYS = 6000
 _WIDTHS = ((0.05, 0.02, 0.006), (0.1, 0.05, 0.02, 0.01))
 _LAST_WIDTHS = (0.02, 0.006)
 _TRIED = 2
+_RIDGE = 1e-2  # penalty of the squared coefficients beyond the linear ones, which rays inside a circle do not determine
 _REACH = 25  # widths
 _SEPARATIONS = (0.3, 0.6, 1.0, 1.6)  # between the circles at the edge of the field, in radii of the stop
 
 
 def fitted_discs(x: Array, p: Array, ok: Booleans) -> Array:
-    """Returns (DISCS, 4, 2): a and b for the monomials 1, x.p, p.p, x.x; first the circle that is smallest at x = 0."""
+    """Returns (DISCS, 4, 2): a and b for the monomials 1, x.p, p.p, x.x."""
     # The search is in y = (p - slope x) / radius, in which the stop is about the unit circle at every field: in p, it
     # ends in worse minima.
-    slope, radius = _stop(x, p, ok)
+    slope, radius = stop_near_axis(x, p, ok)
     y = (p - slope * x) / radius
     few = np.random.default_rng(0).permutation(len(ok))[:_MOST_START_RAYS]
 
@@ -49,11 +50,10 @@ def fitted_discs(x: Array, p: Array, ok: Booleans) -> Array:
         candidates += [_minimised(x[few], y[few], ok[few], cubic, widths) for widths in _WIDTHS]
     candidates = sorted(candidates, key=wrong)[:_TRIED]
     candidates += [_minimised(x, y, ok, discs, _LAST_WIDTHS) for discs in candidates]
-    discs = _in_p(min(candidates, key=wrong), slope, radius)
-    return discs[np.argsort(-np.abs(discs[:, 0, 1]), kind="stable")]
+    return _in_p(min(candidates, key=wrong), slope, radius)
 
 
-def _stop(x: Array, p: Array, ok: Booleans) -> tuple[float, float]:
+def stop_near_axis(x: Array, p: Array, ok: Booleans) -> tuple[float, float]:
     """Returns the slope of p by x at the centre of the stop near the axis, and the radius of the stop in p there."""
     radius = np.hypot(*x.T)
     near = ok & (radius < 0.3 * radius[ok].max())
@@ -106,8 +106,10 @@ class _Rays:
         slope = np.where(self.ok, -1, np.exp(passing) / np.maximum(blocked, 1e-12)) / self.count
         by_radius = -slope[:, None] / (1 + np.exp(depth)) / width / radii
         gradient = (np.concatenate([by_radius, by_radius]) * points).T @ self.basis
+        gradient[:, 2:] += 2 * _RIDGE * discs.reshape(len(discs), -1)[:, 2:]
+        ridge = _RIDGE * (discs[:, 1:] ** 2).sum()
         gradient = gradient.ravel()
-        return float(-np.where(self.ok, passing, np.log(blocked)).mean()), gradient
+        return float(-np.where(self.ok, passing, np.log(blocked)).mean() + ridge), gradient
 
 
 def _minimised(x: Array, p: Array, ok: Booleans, discs: Array, widths: tuple[float, ...]) -> Array:

@@ -79,12 +79,13 @@ def _meta(where: str, meta: Any) -> Mapping[str, Any]:
 
 
 def _checked(where: str, arrays: Mapping[str, np.ndarray], meta: Mapping[str, Any]) -> RayPairs:
-    count = arrays["ok"].size if "ok" in arrays else 0
+    missing = [name for name in _COLUMNS if name not in arrays]
+    if missing:
+        raise InputError(f"{where}: there is no array {missing[0]}")
+    count = arrays["ok"].size
     found: dict[str, Any] = {}
     for name, columns in _COLUMNS.items():
         shape = (count, columns) if columns else (count,)
-        if name not in arrays:
-            raise InputError(f"{where}: there is no array {name}")
         array = arrays[name]
         if array.shape != shape or array.dtype.kind not in "biuf":
             raise InputError(f"{where}: {name} must be numbers of the shape {shape}, not {array.dtype} {array.shape}")

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from .._core import Camera, Film, InputError, RayPairTable
 from ..archive import packed, read_archive, write_archive
 from ..files import check_target
-from .passing_fit import Booleans, fitted_discs, inside
+from .passing_fit import Booleans, fitted_discs, inside, stop_near_axis
 from .polynomial_fit import Array, RayPolynomials, WavelengthScale, evaluated, fitted
 from .ray_file import RayPairs, read_ray_pairs
 
@@ -52,7 +52,7 @@ class RayPairLens:
     """A lens that is known by rays alone, as of a confidential design: a map from rays at the film to the scene.
 
     It holds for the f-number, focus and zoom position of its rays; another stop needs rays and a fit of its own. What
-    needs surfaces does not work with it: ghosts, diffraction, coatings, dispersion within one picture, the planner.
+    needs surfaces does not work with it: ghosts, diffraction, coatings, dispersion within one picture; the planner leaves effects out.
 
     Wavelengths: each coefficient is a polynomial of 1 / (wavelength - 200 nm) through those of the measured wavelengths
     (a least-squares cubic if there are more than four). Beyond the shortest and the longest one, InputError is raised.
@@ -162,6 +162,7 @@ class RayPairLens:
             wavelength_nm=self._checked(wavelength_nm),
             length_mm=self._last_z_mm - self._front_z_mm,
             film_distance_mm=self._film_z_mm - self._last_z_mm,
+            focus_distance_m=self.focus_distance_m,
             film_mm=self.film_mm,
             film_radius_mm=self.fit_report.light_radius_mm,
             last_radius_mm=self._last_radius_mm,
@@ -288,8 +289,9 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
     # it, rays are near the axis at every field.
     is_wide = bool(direction[ok, 2].max() > _WIDE_COSINE)
     object_z = float(np.median(origin[ok, 2]))
+    chief = 1e-3 * np.eye(1, 2), 1e-3 * stop_near_axis(x, p, ok)[0] * np.eye(1, 2)
     near_axis = fit(_at_plane(origin[train], direction[train], object_z), 2, False)
-    position, towards = (values[0] for values in evaluated(near_axis, *_chief(discs), np.zeros(1)))
+    position, towards = (values[0] for values in evaluated(near_axis, *chief, np.zeros(1)))
     with np.errstate(divide="ignore"):
         pupil_z = float(object_z - position[0] * towards[2] / towards[0])
     if not abs(pupil_z - object_z) < _FAR * (pairs.film_z_mm - object_z):
@@ -368,12 +370,6 @@ def _plane_behind(pairs: RayPairs) -> tuple[float, Array]:
     share = (_LEAST_CHIEF_SLOPE - slope) / (1 - slope) if slope < 0.5 * _LEAST_CHIEF_SLOPE else 0.0
     points = pairs.film_side_mm + share * (pairs.film_mm - pairs.film_side_mm)
     return pairs.film_side_z_mm + share * (pairs.film_z_mm - pairs.film_side_z_mm), points
-
-
-def _chief(discs: Array) -> tuple[Array, Array]:
-    """Returns x and p, (1, 2), of a chief ray near the axis."""
-    x = np.array([[1e-3, 0.0]])
-    return x, -discs[0, 0, 0] / discs[0, 0, 1] * x
 
 
 def _at_plane(origin: Array, direction: Array, z: float) -> Array:
