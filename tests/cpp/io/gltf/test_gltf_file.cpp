@@ -182,9 +182,8 @@ TEST_CASE("bad glTF: the mesh and the vertex are named") {
     CHECK(has(error_of(folder.write("b.gltf", gltf(R"([{"name":"x"}])", "[0]"))), "holds no triangles"));
     CHECK(has(error_of(folder.write("c.gltf", "{\n\"asset\": {\n")), "line 3"));
     CHECK(has(error_of(folder.write("d.gltf", R"({"asset":{"version":"1.0"}})")), "expected glTF 2.0"));
-    CHECK(has(
-        error_of(folder.write("e.gltf", gltf(nodes, "[0]", R"(,"extensionsRequired":["KHR_texture_basisu"])"))),
-        "needs the glTF extension KHR_texture_basisu"));
+    CHECK(has(error_of(folder.write("e.gltf", gltf(nodes, "[0]", R"(,"extensionsRequired":["KHR_texture_basisu"])"))),
+              "needs the glTF extension KHR_texture_basisu"));
     fs::remove(folder.path("tri.bin"));
     CHECK(has(error_of(folder.path("a.gltf")), "cannot be read"));
 }
