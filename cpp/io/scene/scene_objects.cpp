@@ -116,10 +116,10 @@ void SceneObjects::add_scene(const std::shared_ptr<Scene>& scene, std::uint32_t 
                              std::ptrdiff_t part_of, Scene& static_geometry) {
     move_warnings(*scene, static_geometry);
     const AnimatedTransform animated = placement(node, transform);
-    if (animated.motion == nullptr && file_.nodes[node].motion >= 0 &&
+    if (animated.motion == nullptr && (file_.nodes[node].motion >= 0 || deforms(node)) &&
         !transform_error(animated.scene_from_object).empty()) {
         static_geometry.warnings.push_back(file_.path + ": node " + in_quotes(file_.nodes[node].name) +
-                                           " is scaled to zero while it moves, and is left out");
+                                           " is scaled to zero while it moves or changes its shape, and is left out");
         return;
     }
     Instance instance{nullptr, animated.scene_from_object, file_.nodes[node].name, part_of};

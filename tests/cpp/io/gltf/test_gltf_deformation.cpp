@@ -211,6 +211,19 @@ TEST_CASE("glTF: a shape without area for a while has no triangles then") {
     CHECK(frozen_at(scene, 0.5).instances[0].object->triangles.size() == 1);
 }
 
+TEST_CASE("glTF: a mesh that deforms below a node scaled to zero is left out") {
+    const Folder folder;
+    DeformingGltf gltf;
+    gltf.nodes = R"([{"name":"hidden","mesh":0,"scale":[0,0,0]},{"name":"floor","mesh":1}])";
+    gltf.primitive = R"(,"targets":[{"POSITION":)" + std::to_string(gltf.add("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1})) +
+                     R"(}]}]},{"primitives":[{"attributes":{"POSITION":0})";
+    gltf.animate(0, "weights", "SCALAR", {0, 1}, {0, 1});
+    const Assembly scene = assembly_of(folder, gltf);
+    CHECK(scene.instances.empty());
+    CHECK(scene.static_geometry->triangles.size() == 1);
+    CHECK(warns(*scene.static_geometry, "node \"hidden\" is scaled to zero while it moves or changes its shape"));
+}
+
 TEST_CASE("glTF: shapes of one time are computed once") {
     const Folder folder;
     DeformingGltf gltf;

@@ -28,7 +28,7 @@ struct GltfFile {
 
     void read(const std::string& more) {
         Checkpoint checkpoint;
-        scene = io::read_gltf(folder.write("m.gltf", gltf(R"([{"mesh":0}])", "[0]", more)), "", checkpoint);
+        scene = io::read_gltf(folder.write("m.gltf", gltf(R"([{"mesh":0}])", "[0]", more)), {}, checkpoint);
     }
     /// The material with the members of `json`, in a file with twenty textures and as many pictures.
     GltfMaterial material(const std::string& json, const std::string& more = "") {
@@ -227,7 +227,7 @@ TEST_CASE("glTF: vertices get the sets of coordinates of the material's textures
             "textures":[{"source":0}],"images":[{"uri":"a.png"}])",
                                       R"(,"NORMAL":1,"TEXCOORD_1":2)");
         Checkpoint checkpoint;
-        const io::FileVertices vertices = io::read_gltf(file.folder.write("u.gltf", text), "", checkpoint).vertices[0];
+        const io::FileVertices vertices = io::read_gltf(file.folder.write("u.gltf", text), {}, checkpoint).vertices[0];
         return std::pair(vertices.uvs.size(), vertices.second_uvs.size());
     };
     const auto sizes = [](std::size_t first, std::size_t second) { return std::pair(first, second); };

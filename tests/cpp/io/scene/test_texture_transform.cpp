@@ -75,7 +75,7 @@ TEST_CASE("vertices keep the coordinates of the file, and each texture has a tra
                                         R"(,"metallicRoughnessTexture":)" + moved(3) + R"(},"emissiveTexture":)" +
                                         moved(4) + R"(}],"textures":[{"source":0}],"images":[{"uri":"a.png"}])"));
     Checkpoint checkpoint;
-    const io::FileScene file = io::read_gltf(path, "", checkpoint);
+    const io::FileScene file = io::read_gltf(path, {}, checkpoint);
     const std::vector<Vec2f>& uvs = file.vertices[0].uvs;
     REQUIRE(uvs.size() == 3);
     // v is 1, 1 and 0 in the file, downwards.
