@@ -2,8 +2,8 @@
 
     python examples/headlights.py fog.png --visibility 60
 
-The car is two lamps above the road, of which each sends a cone of light towards the camera and shows its glass. The
-posts stand in the beams, so that their shadows are visible in the air.
+The car is two lamps above the road, of which each shows its glass and sends a cone of light across the view. The posts
+stand in the beams, so that their shadows are visible in the air.
 """
 
 from __future__ import annotations
@@ -15,14 +15,22 @@ import numpy as np
 import realcam as rc
 
 Mesh = tuple[np.ndarray, np.ndarray]  # vertices (V, 3), m, and triangles (T, 3)
-CAR = (1.2, 0.7, -24.0)  # between the lamps
+CAR = (5.0, 0.7, -20.0)  # between the lamps
+AHEAD = (-1.0, -0.03, 0.4)  # where the lamps shine
 CANDELA = 12_000.0  # of each lamp, on its axis
 
 
+def _across() -> np.ndarray:
+    """Unit vector across the car, horizontal, such that it and the vertical turn to the direction ahead."""
+    across = np.cross((0, 1, 0), AHEAD)
+    return across / np.linalg.norm(across)
+
+
 def disc(middle: np.ndarray, radius: float, sides: int = 24) -> Mesh:
-    """A disc that faces +z."""
+    """A disc that faces ahead of the car."""
     angles = np.linspace(0, 2 * math.pi, sides, endpoint=False)
-    rim = middle + radius * np.stack([np.cos(angles), np.sin(angles), np.zeros(sides)], axis=1)
+    right, up = _across(), np.array((0.0, 1.0, 0.0))
+    rim = middle + radius * (np.cos(angles)[:, None] * right + np.sin(angles)[:, None] * up)
     around = np.arange(sides)
     return np.vstack([middle, rim]), np.stack([np.zeros(sides, int), 1 + around, 1 + (around + 1) % sides], axis=1)
 
@@ -42,8 +50,10 @@ def street() -> rc.Scene:
     """Road, posts and lamps. Materials: 0 asphalt, 1 posts, 2 the lamps' glass."""
     road = np.array([(-30, 0, 5), (30, 0, 5), (30, 0, -90), (-30, 0, -90)], float)
     parts: list[tuple[Mesh, int]] = [((road, np.array([(0, 1, 2), (0, 2, 3)])), 0)]
-    parts += [(post(side, z), 1) for z in range(-34, -3, 5) for side in (-2.2, 3.4)]
-    lamps = [np.add(CAR, (side, 0, 0)) for side in (-0.7, 0.7)]
+    parts += [
+        (post(x, z), 1) for x, z in ((2.5, -19.6), (1.5, -18.2), (0, -17.6), (-1.8, -18.4), (-2.5, -16), (-4, -15.5))
+    ]
+    lamps = [CAR + side * _across() for side in (-0.7, 0.7)]
     parts += [(disc(lamp, 0.09), 2) for lamp in lamps]
     firsts = np.cumsum([0, *(len(vertices) for (vertices, _), _ in parts)])
     scene = rc.Scene.from_arrays(
@@ -58,9 +68,8 @@ def street() -> rc.Scene:
     )
     for lamp in lamps:
         light = tuple(CANDELA * np.array((1.0, 0.95, 0.83)))
-        scene = scene.with_spot_light(
-            tuple(np.add(lamp, (0, 0, 0.01))), (-0.03, -0.02, 1), light, inner_cone_deg=4, outer_cone_deg=22
-        )
+        in_front = tuple(lamp + 0.01 * np.array(AHEAD))
+        scene = scene.with_spot_light(in_front, AHEAD, light, inner_cone_deg=4, outer_cone_deg=18)
     return scene.with_environment((0.02, 0.03, 0.05))
 
 
@@ -72,12 +81,13 @@ def main() -> None:
     parser.add_argument("--width", type=int, default=960, metavar="PIXELS")
     parser.add_argument("--spp", type=int, default=256)
     arguments = parser.parse_args()
-    lens = rc.Lens.load(arguments.lens).focused(12.0).wide_open()
+    lens = rc.Lens.load(arguments.lens).focused(18.0).wide_open()
     film = rc.Film(36, 24, (arguments.width, arguments.width * 2 // 3))
-    view = {"position": (-0.6, 1.3, 0), "look_at": (0.9, 0.8, -24)}
-    camera = rc.Camera(lens, film=film, exposure_time_s=1 / 30, iso=400, **view)
-    scene = street().with_air(arguments.visibility)
-    image = rc.render(scene, camera, spp=arguments.spp, effects={"ghosts", "coatings", "dispersion", "diffraction"})
+    view = {"position": (-0.6, 1.3, 0), "look_at": (0.6, 0.9, -18)}
+    camera = rc.Camera(lens, film=film, exposure_time_s=1 / 60, iso=400, **view)
+    scene = street().with_air(arguments.visibility, anisotropy=0.7)
+    # Paths that pass a lamp closely after some scatterings are rare and bright: the clamp limits what each adds.
+    image = rc.render(scene, camera, spp=arguments.spp, effects={"dispersion"}, max_bounces=8, clamp_cd_m2=20)
     image.save(arguments.output)
 
 

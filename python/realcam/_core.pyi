@@ -2977,6 +2977,26 @@ class Scene:
         Cheap enough to call for every frame: acceleration structures are reused. Raises InputError if there is no such
         instance, if several have the name, and for an invalid transform or motion.
         """
+    def with_air(
+        self,
+        visibility_m: float | None = None,
+        *,
+        extinction_per_m: float | ArrayLike | None = None,
+        albedo: float | ArrayLike = 1.0,
+        anisotropy: float = 0.8,
+        margin_m: float | None = None,
+    ) -> Scene:
+        """
+        Returns the scene with other air, a homogeneous medium such as fog that fills the space outside of glass.
+        visibility_m: distance at which a black object has a contrast of 2% against the horizon; the extinction coefficient is
+          3.912 / visibility_m (Koschmieder 1924). extinction_per_m: that coefficient instead, a number or (r, g, b), per metre.
+          Without both, the air is clear.
+        albedo: fraction of the extinction that is scattering, a number or (r, g, b), 0 to 1.
+        anisotropy: mean cosine of the scattering angle in the phase function of Henyey and Greenstein, -0.99 to 0.99.
+        margin_m: distance by which the air extends beyond the bounding box of the scene's geometry. None: unlimited or, if the
+          scene has a sun or an environment, half of the visibility.
+        Raises InputError. See docs/fog.md.
+        """
     def with_daylight(self, camera: Camera) -> Scene:
         """
         Returns the scene with additional daylight: a sun of 80 klux from the upper left behind the camera, and a

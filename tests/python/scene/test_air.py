@@ -221,5 +221,7 @@ def test_the_light_is_that_of_mitsuba() -> None:
     program = Path(__file__).resolve().parents[3] / "benchmarks" / "fog_against_mitsuba.py"
     done = subprocess.run([sys.executable, program, "--spp", "4096"], capture_output=True, text=True, check=True)
     figures = json.loads(done.stdout)
-    assert np.abs(figures["whole"]).max() < 0.01
-    assert figures["largest_part"] < 0.01 + 4 * figures["noise_of_parts"]
+    for part in ("whole", "parts"):
+        noise = np.array(figures[f"noise_of_{part}"])
+        # Eight pictures of each program give the noise itself to some 25%.
+        assert (np.abs(figures[part]) < 0.01 + 4 * noise).all()
