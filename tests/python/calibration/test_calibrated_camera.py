@@ -60,6 +60,24 @@ def test_a_fisheye_of_190_degrees() -> None:
     assert (picture[2, 2] == 0).all()  # beyond the model's largest angle
 
 
+def test_pixels_beside_a_fold_are_precise_or_black() -> None:
+    """At a fold the angle grows with the square root of the distance, which no grid resolves."""
+    focal, fold = 500.0, np.radians(112.0)
+    model = opencv_models.fisheye_model(
+        np.array([[focal, 0, 700.0], [0, focal, 690.0], [0, 0, 1]]), [-1 / (3 * fold**2), 0, 0, 0], np.radians(180)
+    )
+    made_from = rc.Calibration(model, (1400, 1400), "kb4")
+    assert made_from.largest_angle_deg == pytest.approx(112)
+    camera = made_from.camera("fisheye-6mm-220deg")
+    error = made_from.geometry_error(camera)
+    assert error.everywhere_px < 0.05
+    # The circle of the fold has a radius of 2/3 fold focal = 652 pixels. Linear interpolation of a square root between
+    # nodes h = 2.2 pixels apart, at a distance s from the end, is off by h^2 / (16 s): by 0.02 pixels at s = 15.
+    columns = np.array([[700 + 652 - s, 690.0] for s in (24.0, 40.0, 100.0)])
+    lit = camera.ray(columns, return_light=True)[2]
+    assert (lit > 0).all()
+
+
 def test_a_lens_without_rotational_symmetry() -> None:
     made_from = calibration(skewed=0)
     camera = made_from.camera(LENS.tilted(3, 2))

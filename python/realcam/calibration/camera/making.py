@@ -12,11 +12,12 @@ from ..arrays import rows_of
 from .calibrated_picture import CalibratedPicture
 from .lens_choice import chosen_lens
 from .measuring import geometry_error
-from .sampled_geometry import defined_mask, sampled_geometry
+from .sampled_geometry import defined_mask, precise_mask, sampled_geometry
 from .vignetting import Vignetting, gain_of
 
 COLUMNS = (96, 192, 384, 768)  # cells of the grid of directions; the first that is precise
 PRECISION_PX = 0.004
+LARGEST_ERROR_PX = 0.03  # in the middle of a cell of the mask; pixels about a larger one, near a fold, are black
 DEFAULT_FILM_WIDTH_MM = 7.2  # of a sensor of the type 1/1.8 inch, as machine vision has it
 
 
@@ -41,8 +42,12 @@ def calibrated_camera(
     mask = defined_mask(calibration)
     for columns in COLUMNS:
         camera = camera.replace(geometry=sampled_geometry(calibration, film, columns, mask, gain))
-        if geometry_error(calibration, camera).everywhere_px <= PRECISION_PX:
+        error_px = geometry_error(calibration, camera).everywhere_px
+        if error_px <= PRECISION_PX:
             break
+    if error_px > LARGEST_ERROR_PX:
+        mask = precise_mask(calibration, COLUMNS[-1], LARGEST_ERROR_PX)
+        camera = camera.replace(geometry=sampled_geometry(calibration, film, COLUMNS[-1], mask, gain))
     return camera if scene_from_camera is None else posed(camera, scene_from_camera)
 
 

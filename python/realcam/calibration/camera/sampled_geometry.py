@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt
+from scipy.ndimage import binary_erosion, distance_transform_edt, map_coordinates
 
 from ..._core import CalibratedGeometry, Film, InputError
 from ..arrays import Array
@@ -49,6 +49,15 @@ def sampled_geometry(
     )
 
 
+def _node_directions(calibration: CalibratedPicture, pixels: Array) -> tuple[Array, np.ndarray]:
+    """Returns the directions (rows, columns, 3) of nodes, continued where there are none, and True where there are."""
+    directions = _rays(calibration, pixels)
+    is_defined = np.isfinite(directions[..., 0])
+    if not is_defined.any():
+        raise InputError("the calibration has no ray for any pixel of its picture")
+    return _continued(directions, is_defined), is_defined
+
+
 def node_pixels(calibration: CalibratedPicture, columns: int, rows: int) -> Array:
     """Returns the pixels (rows + 1, columns + 1, 2) of the nodes of a grid over the picture with its margin."""
     width, height = calibration.size
@@ -64,13 +73,44 @@ def _rays(calibration: CalibratedPicture, pixels: Array) -> Array:
 
 def defined_mask(calibration: CalibratedPicture) -> np.ndarray | None:
     """Returns (rows, columns) booleans, True in the cells of the picture that have a ray; None if all have one."""
+    centres = _mask_centres(calibration)
+    _, status = calibration.ray(centres.reshape(-1, 2))
+    defined = (status == PointStatus.OK).reshape(centres.shape[:2])
+    return None if defined.all() else defined
+
+
+def precise_mask(calibration: CalibratedPicture, columns: int, largest_px: float) -> np.ndarray:
+    """Returns defined_mask without the cells about which the grid with this number of columns is off by more pixels.
+
+    At a fold, where the angle per pixel has no limit, no grid is fine enough.
+    """
+    width, height = calibration.size
+    rows = max(1, round(columns * height / width))
+    directions = _rays(calibration, node_pixels(calibration, columns, rows))
+    centres = _mask_centres(calibration)
+    at = [
+        (centres[..., axis] / size + MARGIN) / (1 + 2 * MARGIN) * cells
+        for axis, size, cells in ((1, height, rows), (0, width, columns))
+    ]
+    seen = np.stack([map_coordinates(directions[..., axis], at, order=1) for axis in range(3)], axis=-1)
+    pixels, _ = calibration.project((seen * (1, -1, -1)).reshape(-1, 3))
+    with np.errstate(invalid="ignore"):
+        is_precise = np.linalg.norm(pixels - centres.reshape(-1, 2), axis=1) <= largest_px
+    _, status = calibration.ray(centres.reshape(-1, 2))
+    defined = (is_precise & (status == PointStatus.OK)).reshape(centres.shape[:2])
+    # The error varies within a cell of the grid, which may be larger than those of the mask.
+    across = -(-centres.shape[1] // columns) + 1
+    precise: np.ndarray = binary_erosion(defined, iterations=across, border_value=True)
+    return precise
+
+
+def _mask_centres(calibration: CalibratedPicture) -> Array:
+    """Returns the pixels (rows, columns, 2) of the centres of the mask's cells."""
     width, height = calibration.size
     scale = min(1.0, _MAX_MASK_SIDE / max(width, height))
     columns, rows = max(1, round(width * scale)), max(1, round(height * scale))
     x, y = (np.arange(columns) + 0.5) * width / columns, (np.arange(rows) + 0.5) * height / rows
-    _, status = calibration.ray(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
-    defined = (status == PointStatus.OK).reshape(rows, columns)
-    return None if defined.all() else defined
+    return np.stack(np.meshgrid(x, y), axis=-1)
 
 
 def _positions(calibration: CalibratedPicture, max_angle: float) -> Array:
