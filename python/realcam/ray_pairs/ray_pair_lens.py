@@ -17,7 +17,7 @@ from ..archive import packed, read_archive, write_archive
 from ..files import check_target
 from .passing_fit import Booleans, fitted_discs, inside, stop_near_axis
 from .polynomial_fit import Array, RayPolynomials, WavelengthScale, evaluated, fitted
-from .ray_file import RayPairs, read_ray_pairs
+from .ray_file import LEAST_NM, RayPairs, read_ray_pairs
 
 _FORMAT = "ray-pair-lens/1"
 _LIMIT_BYTES = 64 << 20
@@ -51,8 +51,9 @@ class RayPairFit:
 class RayPairLens:
     """A lens that is known by rays alone, as of a confidential design: a map from rays at the film to the scene.
 
-    It holds for the f-number, focus and zoom position of its rays; another stop needs rays and a fit of its own. What
-    needs surfaces does not work with it: ghosts, diffraction, coatings, dispersion within one picture; the planner leaves effects out.
+    It holds for the f-number, focus and zoom position of its rays; another stop needs rays and a fit of its own.
+    Ghosts, diffraction, coatings and dispersion within one picture need surfaces, and are refused; the planner leaves
+    them out.
 
     Wavelengths: each coefficient is a polynomial of 1 / (wavelength - 200 nm) through those of the measured wavelengths
     (a least-squares cubic if there are more than four). Beyond the shortest and the longest one, InputError is raised.
@@ -126,7 +127,13 @@ class RayPairLens:
             heights = np.asarray(arrays["heights"], float) if "heights" in arrays else None
             coefficients, discs = np.asarray(arrays["coefficients"], float), np.asarray(arrays["discs"], float)
             values = [*numbers.values(), *np.ravel(list(pairs.values())), *asdict(report).values()]
-            if not np.isfinite(values).all() or coefficients.ndim != 4 or discs.ndim != 3:
+            shortest, longest = pairs["wavelengths_nm"]
+            if (
+                not np.isfinite(values).all()
+                or not LEAST_NM <= shortest <= longest
+                or coefficients.ndim != 4
+                or discs.ndim != 3
+            ):
                 raise ValueError("a number is out of range")
             lens = RayPairLens(
                 name=str(about["name"])[:200],

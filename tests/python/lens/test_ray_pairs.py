@@ -165,8 +165,8 @@ def test_ideal_lens() -> None:
 
 
 def fisheye_rays(count: int, focal_mm: float, radius_mm: float) -> dict[str, Any]:
-    """Rays of an ideal equidistant fisheye, theta = r / f. Each film point sends a parallel bundle through a disc that is
-    perpendicular to it, about the centre of projection; its points are those of the plane behind the lens."""
+    """Rays of an ideal equidistant fisheye, theta = r / f. Each film point sends a parallel bundle through a disc that
+    is perpendicular to it, about the centre of projection; its points are those of the plane behind the lens."""
     random = np.random.default_rng(2)
     angle, turn = np.radians(100) * np.sqrt(random.random(count)), 2 * np.pi * random.random(count)
     film = focal_mm * (angle * [np.cos(turn), np.sin(turn)]).T
