@@ -18,8 +18,8 @@ from ..archive import read_regular, unpacked
 from ..files import check_target, write_whole
 
 FORMAT = "ray-pairs/1"
-_LIMIT_BYTES = 2 << 30
-_MOST_RAYS = 5_000_000
+_LIMIT_BYTES = 1 << 30
+_MOST_RAYS = 1_000_000
 _LONGEST_MM = 1e6
 LEAST_NM = 250.0  # above the pole of the wavelength variable (polynomial_fit.py)
 _COLUMNS = {"wavelength_nm": 0, "film_mm": 2, "film_side_mm": 2, "object_origin_mm": 3, "object_direction": 3, "ok": 0}

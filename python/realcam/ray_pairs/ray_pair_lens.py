@@ -23,6 +23,7 @@ _FORMAT = "ray-pair-lens/1"
 _LIMIT_BYTES = 64 << 20
 _HELD_OUT = 0.2  # of the rays, to which nothing is fitted
 _LEAST_PASSING = 200
+_MOST_FITTED = 40000  # rays to which polynomials are fitted; their columns take 200 MB
 _WORTHWHILE = 0.8  # factor by which the error of a higher degree must be smaller
 _WIDE_COSINE = -0.5  # of rays to the axis: beyond 60 degrees a plane is a bad reference of positions
 _LEAST_CHIEF_SLOPE = 0.1  # height of the chief ray in the plane behind the lens, per height on the film
@@ -141,8 +142,9 @@ class RayPairLens:
                 fit_report=report,
                 _polynomials=RayPolynomials(degree, coefficients, heights),
                 _discs=discs,
-                **numbers,
-                **pairs,  # type: ignore[arg-type]
+                film_mm=pairs["film_mm"],
+                wavelengths_nm=pairs["wavelengths_nm"],
+                **numbers,  # type: ignore[arg-type]
             )
             lens.table()
             lens.table(lens.wavelengths_nm[0])
@@ -276,8 +278,9 @@ def _points(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
 def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPairLens:
     ok, held_out = pairs.ok, random < _HELD_OUT
-    train, test = ok & ~held_out, ok & held_out
-    if train.sum() < _LEAST_PASSING or not test.any():
+    train, test = np.flatnonzero(ok & ~held_out), np.flatnonzero(ok & held_out)
+    train = train[np.argsort(random[train])[:_MOST_FITTED]]
+    if len(train) < _LEAST_PASSING or not len(test):
         raise InputError(f"{ok.sum()} rays pass the lens; at least {_LEAST_PASSING / (1 - _HELD_OUT):g} are needed")
     film_radius, last_z, last = _outermost(pairs.film_mm), *_plane_behind(pairs)
     light_radius = min(film_radius, _FIELD_MARGIN * _outermost(pairs.film_mm[ok]))
@@ -298,9 +301,9 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
     object_z = float(np.median(origin[ok, 2]))
     chief = 1e-3 * np.eye(1, 2), 1e-3 * stop_near_axis(x, p, ok)[0] * np.eye(1, 2)
     near_axis = fit(_at_plane(origin[train], direction[train], object_z), 2, False)
-    position, towards = (values[0] for values in evaluated(near_axis, *chief, np.zeros(1)))
+    height, towards = (values[0] for values in evaluated(near_axis, *chief, np.zeros(1)))
     with np.errstate(divide="ignore"):
-        pupil_z = float(object_z - position[0] * towards[2] / towards[0])
+        pupil_z = float(object_z - height[0] * towards[2] / towards[0])
     if not abs(pupil_z - object_z) < _FAR * (pairs.film_z_mm - object_z):
         pupil_z = object_z
     radius = max(abs(pupil_z - object_z), 1.2 * _largest_distance(origin[ok], direction[ok], pupil_z))
@@ -318,8 +321,8 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
         if best is None or np.sqrt((angles**2).mean()) < _WORTHWHILE * np.sqrt((errors**2).mean()):
             best, errors = found, angles
     assert best is not None
-    there = evaluated(best, x[test], p[test], variable[test])
-    distance = _distances(origin[test], direction[test], there[0], pupil_z)
+    position = evaluated(best, x[test], p[test], variable[test])[0]
+    distance = _distances(origin[test], direction[test], position, pupil_z)
     decided = inside(discs, x, p) & (np.hypot(*x.T) <= 1) & (np.hypot(*p.T) <= 1)
     measured_pupil = _outermost(pairs.film_side_mm)
     if (np.hypot(*pairs.film_side_mm[ok].T) > _EDGE * measured_pupil).any():
@@ -380,7 +383,8 @@ def _plane_behind(pairs: RayPairs) -> tuple[float, Array]:
 
 
 def _at_plane(origin: Array, direction: Array, z: float) -> Array:
-    return origin + ((z - origin[:, 2]) / direction[:, 2])[:, None] * direction
+    crossing: Array = origin + ((z - origin[:, 2]) / direction[:, 2])[:, None] * direction
+    return crossing
 
 
 def _largest_distance(origin: Array, direction: Array, z: float) -> float:
@@ -393,7 +397,8 @@ def _at_sphere(origin: Array, direction: Array, z: float, radius: float) -> Arra
     offset = origin - (0, 0, z)
     along = (offset * direction).sum(1)
     reach = np.sqrt(radius**2 - (offset**2).sum(1) + along**2)
-    return origin + (reach - along)[:, None] * direction
+    leaving: Array = origin + (reach - along)[:, None] * direction
+    return leaving
 
 
 def _distances(origin: Array, direction: Array, found: Array, plane_z: float) -> Array:
