@@ -144,7 +144,7 @@ class RayPairLens:
                 _discs=discs,
                 film_mm=pairs["film_mm"],
                 wavelengths_nm=pairs["wavelengths_nm"],
-                **numbers,  # type: ignore[arg-type]
+                **numbers,
             )
             lens.table()
             lens.table(lens.wavelengths_nm[0])
@@ -301,28 +301,25 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
     object_z = float(np.median(origin[ok, 2]))
     chief = 1e-3 * np.eye(1, 2), 1e-3 * stop_near_axis(x, p, ok)[0] * np.eye(1, 2)
     near_axis = fit(_at_plane(origin[train], direction[train], object_z), 2, False)
-    height, towards = (values[0] for values in evaluated(near_axis, *chief, np.zeros(1)))
+    chief_point, chief_direction = (values[0] for values in evaluated(near_axis, *chief, np.zeros(1)))
     with np.errstate(divide="ignore"):
-        pupil_z = float(object_z - height[0] * towards[2] / towards[0])
+        pupil_z = float(object_z - chief_point[0] * chief_direction[2] / chief_direction[0])
     if not abs(pupil_z - object_z) < _FAR * (pairs.film_z_mm - object_z):
         pupil_z = object_z
     radius = max(abs(pupil_z - object_z), 1.2 * _largest_distance(origin[ok], direction[ok], pupil_z))
 
-    def position_of(rays: Booleans) -> Array:
-        if is_wide:
-            return _at_sphere(origin[rays], direction[rays], pupil_z, radius)
-        return _at_plane(origin[rays], direction[rays], pupil_z)
-
+    at, towards = origin[train], direction[train]
+    position = _at_sphere(at, towards, pupil_z, radius) if is_wide else _at_plane(at, towards, pupil_z)
     best, errors = None, np.array([np.inf])
     for degree in range(1, largest_degree + 1):
-        found = fit(position_of(train), degree, is_wide)
+        found = fit(position, degree, is_wide)
         there = evaluated(found, x[test], p[test], variable[test])[1]
         angles = np.linalg.norm(np.cross(there, direction[test]), axis=1)
         if best is None or np.sqrt((angles**2).mean()) < _WORTHWHILE * np.sqrt((errors**2).mean()):
             best, errors = found, angles
     assert best is not None
-    position = evaluated(best, x[test], p[test], variable[test])[0]
-    distance = _distances(origin[test], direction[test], position, pupil_z)
+    fitted_position = evaluated(best, x[test], p[test], variable[test])[0]
+    distance = _distances(origin[test], direction[test], fitted_position, pupil_z)
     decided = inside(discs, x, p) & (np.hypot(*x.T) <= 1) & (np.hypot(*p.T) <= 1)
     measured_pupil = _outermost(pairs.film_side_mm)
     if (np.hypot(*pairs.film_side_mm[ok].T) > _EDGE * measured_pupil).any():
@@ -404,4 +401,5 @@ def _at_sphere(origin: Array, direction: Array, z: float, radius: float) -> Arra
 def _distances(origin: Array, direction: Array, found: Array, plane_z: float) -> Array:
     """Returns the distances of the fitted positions from the rays, (N,)."""
     at = np.column_stack([found[:, :2], np.where(np.isnan(found[:, 2]), plane_z, found[:, 2])])
-    return np.linalg.norm(np.cross(at - origin, direction), axis=1)
+    distances: Array = np.linalg.norm(np.cross(at - origin, direction), axis=1)
+    return distances
