@@ -679,6 +679,25 @@ class Lens:
         Raises LensFileError with file, line and surface, and InputError if glass contains a name that is not in the file.
         Missing values that are computed or assumed cause a UserWarning.
         """
+    @staticmethod
+    def save_rays(
+        lens: Lens,
+        path: str | os.PathLike[str],
+        *,
+        rays: int = 20000,
+        wavelengths_nm: ArrayLike | None = None,
+        seed: int = 0,
+    ) -> None:
+        """
+        Writes rays of a lens, at its current focus and stop, to an .npz file of the format ray-pairs/1.
+
+        Film points are uniform over the circle about the film, and the points in the plane of the last vertex over a disc
+        through which all light passes. Blocked rays are stored, too, because vignetting is fitted to them.
+        rays: their number. wavelengths_nm: of which each ray has one, at random; None: the design wavelength. seed: of the
+        random numbers.
+
+        Raises InputError for a lens without rotational symmetry or with a curved film, and ImageFileError.
+        """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     def __init__(
@@ -2228,6 +2247,62 @@ class CalibratedGeometry:
         Raises InputError.
         """
 
+@final
+class RayPairTable:
+    """
+    Polynomials fitted to rays before and behind a lens, at one wavelength. Immutable; made by RayPairLens.
+    """
+
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, memo: object) -> Self: ...
+    def __init__(
+        self,
+        *,
+        name: str,
+        wavelength_nm: float,
+        length_mm: float,
+        film_distance_mm: float,
+        focus_distance_m: float,
+        film_mm: tuple[float, float],
+        film_radius_mm: float,
+        last_radius_mm: float,
+        plane_mm: float,
+        degree: int,
+        coefficients: ArrayLike,
+        heights: ArrayLike | None = None,
+        discs: ArrayLike,
+    ) -> None:
+        """
+        length_mm: from the front vertex (z = 0) to the last vertex. film_distance_mm: from there to the film.
+        focus_distance_m: distance of the plane in focus from the film.
+        film_mm: (width, height) of the film that a Camera uses by default.
+        film_radius_mm, last_radius_mm: scales of film points x and of points p in the plane of the last vertex; no light beyond.
+        coefficients: (terms, 3, 2): a and b of position, direction and stop point a x + b p, for the monomials (x.x)^i (p.p)^j
+          (x.p)^k with i + j + k <= degree, of which i changes slowest and k fastest.
+        heights: (terms, 2): z of position and direction. None: positions lie at z = plane_mm, directions are unit vectors.
+        discs: (discs, 4, 2): a and b of points a x + b p, for the monomials 1, x.p, p.p, x.x; a ray passes if all lie inside the
+          unit circle.
+        Raises InputError.
+        """
+    def trace(
+        self, film_mm: ArrayLike, last_mm: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool]]:
+        """
+        Returns (origins_mm, directions, passed), (N, 3), (N, 3) and (N,), of the rays in front of the lens.
+        film_mm, last_mm: (N, 2), points on the film and in the plane of the last vertex.
+        """
+    @property
+    def paraxial_lens(self) -> Lens:
+        """
+        Lens of three thin elements with the same first-order data, which Camera(lens=...) takes together with ray_pairs.
+        """
+    @property
+    def wavelength_nm(self) -> float:
+        """
+        Wavelength.
+        """
+
 class FieldOfView(NamedTuple):
     horizontal: float
     vertical: float
@@ -2257,6 +2332,7 @@ class Camera:
         readout_time_s: float = 0.0,
         motion: Sequence[tuple[float, _Triple, _Triple] | tuple[float, _Triple, _Triple, _Triple]] = [],
         geometry: CalibratedGeometry | None = None,
+        ray_pairs: RayPairTable | None = None,
     ) -> None:
         """
         lens: the Lens. film: a Film; None: that of the lens.
@@ -2269,6 +2345,8 @@ class Camera:
         motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in increasing order of time, instead of
           position, look_at and up, which then become those at time 0. Between keys the camera moves uniformly.
         geometry: the CalibratedGeometry of a calibration (Calibration.camera) for this film; None: that of the lens.
+        ray_pairs: the RayPairTable of a RayPairLens, whose paraxial_lens is `lens` and whose model is "polynomial"; made by
+          RayPairLens.camera. None: rays are those of the lens's surfaces.
         Raises InputError.
         """
     def framing(
@@ -2487,6 +2565,11 @@ class Camera:
     def position(self) -> tuple[float, float, float]:
         """
         (x, y, z) of the centre of the unshifted film, in metres, scene.
+        """
+    @property
+    def ray_pairs(self) -> RayPairTable:
+        """
+        The RayPairTable of a camera with a RayPairLens; None: the rays are those of the lens's surfaces.
         """
     @property
     def readout_time_s(self) -> float:

@@ -79,7 +79,8 @@ def _in_p(discs: Array, slope: float, radius: float) -> Array:
 
 def inside(discs: Array, x: Array, p: Array) -> Booleans:
     """True for rays whose points lie inside all circles."""
-    return (_Rays(x, p, np.zeros(len(x), bool), 4).radii(discs)[1] <= 1).all(1)
+    radii = _Rays(x, p, np.zeros(len(x), bool), 4).radii(discs)[1]
+    return np.asarray((radii <= 1).all(1))
 
 
 class _Rays:

@@ -18,9 +18,10 @@ from ..archive import read_regular, unpacked
 from ..files import check_target, write_whole
 
 FORMAT = "ray-pairs/1"
-_LIMIT_BYTES = 2 << 30
-_MOST_RAYS = 5_000_000
+_LIMIT_BYTES = 1 << 30
+_MOST_RAYS = 1_000_000
 _LONGEST_MM = 1e6
+LEAST_NM = 250.0  # above the pole of the wavelength variable (polynomial_fit.py)
 _COLUMNS = {"wavelength_nm": 0, "film_mm": 2, "film_side_mm": 2, "object_origin_mm": 3, "object_direction": 3, "ok": 0}
 _WIDE_COSINE = 0.05  # of the angle to the axis, below which a ray crosses a plane far from the lens
 
@@ -100,8 +101,8 @@ def _checked(where: str, arrays: Mapping[str, np.ndarray], meta: Mapping[str, An
     lengths = np.linalg.norm(found["object_direction"][ok], axis=1)
     if not (np.abs(lengths - 1) < 1e-4).all():
         raise InputError(f"{where}: object_direction must be unit vectors")
-    if not ((found["wavelength_nm"] >= 100) & (found["wavelength_nm"] <= 20000)).all():
-        raise InputError(f"{where}: wavelength_nm must lie between 100 and 20000")
+    if not ((found["wavelength_nm"] >= LEAST_NM) & (found["wavelength_nm"] <= 20000)).all():
+        raise InputError(f"{where}: wavelength_nm must lie between {LEAST_NM:g} and 20000")
     planes = ("film_plane_z_mm", "film_side_reference_z_mm")
     film_z, side_z = (_number(where, meta, key, -_LONGEST_MM) for key in planes)
     if not film_z > side_z:

@@ -17,12 +17,13 @@ from ..archive import packed, read_archive, write_archive
 from ..files import check_target
 from .passing_fit import Booleans, fitted_discs, inside, stop_near_axis
 from .polynomial_fit import Array, RayPolynomials, WavelengthScale, evaluated, fitted
-from .ray_file import RayPairs, read_ray_pairs
+from .ray_file import LEAST_NM, RayPairs, read_ray_pairs
 
 _FORMAT = "ray-pair-lens/1"
 _LIMIT_BYTES = 64 << 20
 _HELD_OUT = 0.2  # of the rays, to which nothing is fitted
 _LEAST_PASSING = 200
+_MOST_FITTED = 40000  # rays to which polynomials are fitted; their columns take 200 MB
 _WORTHWHILE = 0.8  # factor by which the error of a higher degree must be smaller
 _WIDE_COSINE = -0.5  # of rays to the axis: beyond 60 degrees a plane is a bad reference of positions
 _LEAST_CHIEF_SLOPE = 0.1  # height of the chief ray in the plane behind the lens, per height on the film
@@ -51,8 +52,9 @@ class RayPairFit:
 class RayPairLens:
     """A lens that is known by rays alone, as of a confidential design: a map from rays at the film to the scene.
 
-    It holds for the f-number, focus and zoom position of its rays; another stop needs rays and a fit of its own. What
-    needs surfaces does not work with it: ghosts, diffraction, coatings, dispersion within one picture; the planner leaves effects out.
+    It holds for the f-number, focus and zoom position of its rays; another stop needs rays and a fit of its own.
+    Ghosts, diffraction, coatings and dispersion within one picture need surfaces, and are refused; the planner leaves
+    them out.
 
     Wavelengths: each coefficient is a polynomial of 1 / (wavelength - 200 nm) through those of the measured wavelengths
     (a least-squares cubic if there are more than four). Beyond the shortest and the longest one, InputError is raised.
@@ -126,7 +128,13 @@ class RayPairLens:
             heights = np.asarray(arrays["heights"], float) if "heights" in arrays else None
             coefficients, discs = np.asarray(arrays["coefficients"], float), np.asarray(arrays["discs"], float)
             values = [*numbers.values(), *np.ravel(list(pairs.values())), *asdict(report).values()]
-            if not np.isfinite(values).all() or coefficients.ndim != 4 or discs.ndim != 3:
+            shortest, longest = pairs["wavelengths_nm"]
+            if (
+                not np.isfinite(values).all()
+                or not LEAST_NM <= shortest <= longest
+                or coefficients.ndim != 4
+                or discs.ndim != 3
+            ):
                 raise ValueError("a number is out of range")
             lens = RayPairLens(
                 name=str(about["name"])[:200],
@@ -134,8 +142,9 @@ class RayPairLens:
                 fit_report=report,
                 _polynomials=RayPolynomials(degree, coefficients, heights),
                 _discs=discs,
+                film_mm=pairs["film_mm"],
+                wavelengths_nm=pairs["wavelengths_nm"],
                 **numbers,
-                **pairs,  # type: ignore[arg-type]
             )
             lens.table()
             lens.table(lens.wavelengths_nm[0])
@@ -269,8 +278,9 @@ def _points(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
 def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPairLens:
     ok, held_out = pairs.ok, random < _HELD_OUT
-    train, test = ok & ~held_out, ok & held_out
-    if train.sum() < _LEAST_PASSING or not test.any():
+    train, test = np.flatnonzero(ok & ~held_out), np.flatnonzero(ok & held_out)
+    train = train[np.argsort(random[train])[:_MOST_FITTED]]
+    if len(train) < _LEAST_PASSING or not len(test):
         raise InputError(f"{ok.sum()} rays pass the lens; at least {_LEAST_PASSING / (1 - _HELD_OUT):g} are needed")
     film_radius, last_z, last = _outermost(pairs.film_mm), *_plane_behind(pairs)
     light_radius = min(film_radius, _FIELD_MARGIN * _outermost(pairs.film_mm[ok]))
@@ -291,28 +301,25 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
     object_z = float(np.median(origin[ok, 2]))
     chief = 1e-3 * np.eye(1, 2), 1e-3 * stop_near_axis(x, p, ok)[0] * np.eye(1, 2)
     near_axis = fit(_at_plane(origin[train], direction[train], object_z), 2, False)
-    position, towards = (values[0] for values in evaluated(near_axis, *chief, np.zeros(1)))
+    chief_point, chief_direction = (values[0] for values in evaluated(near_axis, *chief, np.zeros(1)))
     with np.errstate(divide="ignore"):
-        pupil_z = float(object_z - position[0] * towards[2] / towards[0])
+        pupil_z = float(object_z - chief_point[0] * chief_direction[2] / chief_direction[0])
     if not abs(pupil_z - object_z) < _FAR * (pairs.film_z_mm - object_z):
         pupil_z = object_z
     radius = max(abs(pupil_z - object_z), 1.2 * _largest_distance(origin[ok], direction[ok], pupil_z))
 
-    def position_of(rays: Booleans) -> Array:
-        if is_wide:
-            return _at_sphere(origin[rays], direction[rays], pupil_z, radius)
-        return _at_plane(origin[rays], direction[rays], pupil_z)
-
+    at, towards = origin[train], direction[train]
+    position = _at_sphere(at, towards, pupil_z, radius) if is_wide else _at_plane(at, towards, pupil_z)
     best, errors = None, np.array([np.inf])
     for degree in range(1, largest_degree + 1):
-        found = fit(position_of(train), degree, is_wide)
+        found = fit(position, degree, is_wide)
         there = evaluated(found, x[test], p[test], variable[test])[1]
         angles = np.linalg.norm(np.cross(there, direction[test]), axis=1)
         if best is None or np.sqrt((angles**2).mean()) < _WORTHWHILE * np.sqrt((errors**2).mean()):
             best, errors = found, angles
     assert best is not None
-    there = evaluated(best, x[test], p[test], variable[test])
-    distance = _distances(origin[test], direction[test], there[0], pupil_z)
+    fitted_position = evaluated(best, x[test], p[test], variable[test])[0]
+    distance = _distances(origin[test], direction[test], fitted_position, pupil_z)
     decided = inside(discs, x, p) & (np.hypot(*x.T) <= 1) & (np.hypot(*p.T) <= 1)
     measured_pupil = _outermost(pairs.film_side_mm)
     if (np.hypot(*pairs.film_side_mm[ok].T) > _EDGE * measured_pupil).any():
@@ -373,7 +380,8 @@ def _plane_behind(pairs: RayPairs) -> tuple[float, Array]:
 
 
 def _at_plane(origin: Array, direction: Array, z: float) -> Array:
-    return origin + ((z - origin[:, 2]) / direction[:, 2])[:, None] * direction
+    crossing: Array = origin + ((z - origin[:, 2]) / direction[:, 2])[:, None] * direction
+    return crossing
 
 
 def _largest_distance(origin: Array, direction: Array, z: float) -> float:
@@ -386,10 +394,12 @@ def _at_sphere(origin: Array, direction: Array, z: float, radius: float) -> Arra
     offset = origin - (0, 0, z)
     along = (offset * direction).sum(1)
     reach = np.sqrt(radius**2 - (offset**2).sum(1) + along**2)
-    return origin + (reach - along)[:, None] * direction
+    leaving: Array = origin + (reach - along)[:, None] * direction
+    return leaving
 
 
 def _distances(origin: Array, direction: Array, found: Array, plane_z: float) -> Array:
     """Returns the distances of the fitted positions from the rays, (N,)."""
     at = np.column_stack([found[:, :2], np.where(np.isnan(found[:, 2]), plane_z, found[:, 2])])
-    return np.linalg.norm(np.cross(at - origin, direction), axis=1)
+    distances: Array = np.linalg.norm(np.cross(at - origin, direction), axis=1)
+    return distances

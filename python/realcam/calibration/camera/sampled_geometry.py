@@ -49,15 +49,6 @@ def sampled_geometry(
     )
 
 
-def _node_directions(calibration: CalibratedPicture, pixels: Array) -> tuple[Array, np.ndarray]:
-    """Returns the directions (rows, columns, 3) of nodes, continued where there are none, and True where there are."""
-    directions = _rays(calibration, pixels)
-    is_defined = np.isfinite(directions[..., 0])
-    if not is_defined.any():
-        raise InputError("the calibration has no ray for any pixel of its picture")
-    return _continued(directions, is_defined), is_defined
-
-
 def node_pixels(calibration: CalibratedPicture, columns: int, rows: int) -> Array:
     """Returns the pixels (rows + 1, columns + 1, 2) of the nodes of a grid over the picture with its margin."""
     width, height = calibration.size
