@@ -60,7 +60,9 @@ void validate_effects(const RenderSettings& settings, const Camera& camera) {
     if (const EffectInfo* effect = first_active_with(effects, &EffectInfo::needs_rotational_lens))
         require_radial_pupil(camera.lens, std::string(effect->name));
     if (camera.model == CameraModel::full_lens) return;
-    if (const EffectInfo* effect = first_active_with(effects, &EffectInfo::needs_full_lens))
+    const EffectInfo* effect = first_active_with(effects, &EffectInfo::needs_full_lens);
+    if (!effect && camera.ray_pairs) effect = first_active_with(effects, &EffectInfo::needs_rotational_lens);
+    if (effect)
         throw InputError(std::string(effect->name) +
                          (camera.ray_pairs ? ": it needs the surfaces of the lens, of which only rays were measured"
                                            : ": the camera's model must be full"));
