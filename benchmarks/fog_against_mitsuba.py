@@ -114,6 +114,7 @@ def main() -> None:
     theirs = np.array([parts_of(np.array(mi.render(scene, spp=spp, seed=k))[..., :3]) for k in range(passes)])
     unit = exposure_of_unit_radiance(arguments.device)
     ours = np.array([parts_of(realcam_picture(k, spp, arguments.device) / unit) for k in range(passes)])
+
     def compare(ours: np.ndarray, theirs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Relative difference of the means of several pictures, and its standard error."""
         errors = [of.std(axis=0, ddof=1) / of.mean(axis=0) / np.sqrt(passes) for of in (ours, theirs)]
