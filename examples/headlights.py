@@ -15,9 +15,9 @@ import numpy as np
 import realcam as rc
 
 Mesh = tuple[np.ndarray, np.ndarray]  # vertices (V, 3), m, and triangles (T, 3)
-CAR = (5.0, 0.7, -20.0)  # between the lamps
-AHEAD = (-1.0, -0.03, 0.4)  # where the lamps shine
-CANDELA = 12_000.0  # of each lamp, on its axis
+CAR = (3.8, 0.7, -20.0)  # between the lamps
+AHEAD = (-1.0, -0.02, 0.3)  # where the lamps shine
+CANDELA = 40_000.0  # of each lamp, on its axis
 
 
 def _across() -> np.ndarray:
@@ -35,7 +35,7 @@ def disc(middle: np.ndarray, radius: float, sides: int = 24) -> Mesh:
     return np.vstack([middle, rim]), np.stack([np.zeros(sides, int), 1 + around, 1 + (around + 1) % sides], axis=1)
 
 
-def post(x: float, z: float, height: float = 1.1, radius: float = 0.06, sides: int = 16) -> Mesh:
+def post(x: float, z: float, height: float = 1.1, radius: float = 0.12, sides: int = 16) -> Mesh:
     """An upright cylinder on the road."""
     angles = np.linspace(0, 2 * math.pi, sides, endpoint=False)
     foot = np.stack([x + radius * np.cos(angles), np.zeros(sides), z + radius * np.sin(angles)], axis=1)
@@ -63,7 +63,7 @@ def street() -> rc.Scene:
         materials=[
             rc.Material(diffuse=(0.12, 0.12, 0.13)),
             rc.Material(diffuse=(0.6, 0.6, 0.58)),
-            rc.Material(diffuse=(0, 0, 0), emission=(60_000, 57_000, 50_000)),
+            rc.Material(diffuse=(0, 0, 0), emission=(4000, 3800, 3300)),
         ],
     )
     for lamp in lamps:
@@ -76,15 +76,15 @@ def street() -> rc.Scene:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("output")
-    parser.add_argument("--visibility", type=float, default=60.0, metavar="METRES")
+    parser.add_argument("--visibility", type=float, default=50.0, metavar="METRES")
     parser.add_argument("--lens", default="double-gauss-50mm")
     parser.add_argument("--width", type=int, default=960, metavar="PIXELS")
     parser.add_argument("--spp", type=int, default=256)
     arguments = parser.parse_args()
-    lens = rc.Lens.load(arguments.lens).focused(18.0).wide_open()
+    lens = rc.Lens.load(arguments.lens).focused(13.0).wide_open()
     film = rc.Film(36, 24, (arguments.width, arguments.width * 2 // 3))
-    view = {"position": (-0.6, 1.3, 0), "look_at": (0.6, 0.9, -18)}
-    camera = rc.Camera(lens, film=film, exposure_time_s=1 / 60, iso=400, **view)
+    view = {"position": (-0.6, 1.3, -5), "look_at": (-0.4, 1.0, -19)}
+    camera = rc.Camera(lens, film=film, exposure_time_s=1 / 30, iso=400, **view)
     scene = street().with_air(arguments.visibility, anisotropy=0.7)
     # Paths that pass a lamp closely after some scatterings are rare and bright: the clamp limits what each adds.
     image = rc.render(scene, camera, spp=arguments.spp, effects={"dispersion"}, max_bounces=8, clamp_cd_m2=20)
