@@ -75,21 +75,27 @@ keys_of(const Camera& camera) {
     return py::tuple(keys);
 }
 
-Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Triple& position, const Triple& look_at,
+/// A lens by its surfaces, or by its rays.
+using AnyLens = std::variant<LensSystem, std::shared_ptr<RayPairTable>>;
+
+Camera make_camera(const AnyLens& lens, std::optional<Film> film, const Triple& position, const Triple& look_at,
                    const Triple& up, double exposure_time_s, double iso, const std::string& model,
                    double shutter_opens_s, double readout_time_s, const std::vector<Key>& motion,
-                   const std::optional<std::shared_ptr<CalibratedGeometry>>& geometry,
-                   const std::optional<std::shared_ptr<RayPairTable>>& ray_pairs) {
+                   const std::optional<std::shared_ptr<CalibratedGeometry>>& geometry) {
     Camera camera;
-    camera.lens = lens;
-    camera.film = film ? *film : default_film(lens, std::nullopt, std::nullopt);
+    if (const auto* table = std::get_if<std::shared_ptr<RayPairTable>>(&lens)) {
+        camera.ray_pairs = *table;
+        camera.lens = paraxial_lens(**table);
+    } else {
+        camera.lens = std::get<LensSystem>(lens);
+    }
+    camera.film = film ? *film : default_film(camera.lens, std::nullopt, std::nullopt);
     camera.pose = {vector_of(position), vector_of(look_at), vector_of(up)};
     camera.model = model_from(model);
     camera.exposure_time_s = exposure_time_s;
     camera.iso = iso;
     camera.shutter = {shutter_opens_s, readout_time_s};
     if (geometry) camera.geometry = *geometry;
-    if (ray_pairs) camera.ray_pairs = *ray_pairs;
     validate(camera);
     if (!motion.empty()) set_motion(camera, motion_from(motion));
     return camera;
@@ -294,8 +300,8 @@ Raises InputError.)")
              R"(Returns (origins_mm, directions, passed), (N, 3), (N, 3) and (N,), of the rays in front of the lens.
 film_mm, last_mm: (N, 2), points on the film and in the plane of the last vertex.)")
         .def_property_readonly("paraxial_lens", &paraxial_lens,
-                               "Lens of three thin elements with the same first-order data, which Camera(lens=...) "
-                               "takes together with ray_pairs.")
+                               "Lens of three thin elements with the same first-order data: Camera.lens of a camera "
+                               "with this table.")
         .def_readonly("wavelength_nm", &RayPairTable::wavelength_nm, "Wavelength.")
         .def("__repr__", [](const RayPairTable& t) {
             return "<realcam.RayPairTable of " + (t.name.empty() ? "a lens" : shortened(t.name)) + " at " +
@@ -372,11 +378,12 @@ the lens lies in front of it, and the centre of perspective is entrance_pupil_po
 the film, whose centre is film_centre_m; position and look_at stay on the lens's axis.)");
     def_hashable_value(camera_class);
     camera_class
-        .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
-             "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
-             "model"_a = "full", "shutter_opens_s"_a = 0.0, "readout_time_s"_a = 0.0, "motion"_a = std::vector<Key>(),
-             "geometry"_a = py::none(), "ray_pairs"_a = py::none(),
-             R"(lens: the Lens. film: a Film; None: that of the lens.
+        .def(py::init(&make_camera), "lens"_a.none(false), py::kw_only(), "film"_a = py::none(),
+             "position"_a = Triple{0, 0, 0}, "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0},
+             "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0, "model"_a = "full", "shutter_opens_s"_a = 0.0,
+             "readout_time_s"_a = 0.0, "motion"_a = std::vector<Key>(), "geometry"_a = py::none(),
+             R"(lens: the Lens, or the RayPairTable of a RayPairLens, which needs the model "polynomial".
+film: a Film; None: that of the lens.
 position, look_at: (x, y, z) in metres, scene. up: the upward direction.
 exposure_time_s: exposure time of each pixel. iso: sensitivity (ISO 12232).
 model: camera model: "full" (ray trace through every surface), "thick" (paraxial matrix), "mapped" (an ideal lens with
@@ -386,8 +393,6 @@ shutter_opens_s: time in the scene at which the exposure begins. readout_time_s:
 motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in increasing order of time, instead of
   position, look_at and up, which then become those at time 0. Between keys the camera moves uniformly.
 geometry: the CalibratedGeometry of a calibration (Calibration.camera) for this film; None: that of the lens.
-ray_pairs: the RayPairTable of a RayPairLens, whose paraxial_lens is `lens` and whose model is "polynomial"; made by
-  RayPairLens.camera. None: rays are those of the lens's surfaces.
 Raises InputError.)")
         .def("replace", &changed_camera, py::kw_only(), "lens"_a = py::none(), "film"_a = py::none(),
              "position"_a = py::none(), "look_at"_a = py::none(), "up"_a = py::none(), "exposure_time_s"_a = py::none(),

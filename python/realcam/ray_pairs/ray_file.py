@@ -131,7 +131,7 @@ def _number(where: str, meta: Mapping[str, Any], key: str, least: float) -> floa
 
 
 def save_rays(
-    lens: Lens,
+    self: Lens,
     path: str | os.PathLike[str],
     *,
     rays: int = 20000,
@@ -150,14 +150,14 @@ def save_rays(
     check_target(path, (".npz",))
     if not 1 <= rays <= _MOST_RAYS:
         raise InputError(f"rays must lie between 1 and {_MOST_RAYS}")
-    if not lens.is_rotational or np.isfinite(lens.film_radius_of_curvature_mm):
+    if not self.is_rotational or np.isfinite(self.film_radius_of_curvature_mm):
         raise InputError("ray pairs need a rotationally symmetric lens with a flat film")
-    waves = np.atleast_1d(np.asarray(lens.wavelength_nm if wavelengths_nm is None else wavelengths_nm, float))
+    waves = np.atleast_1d(np.asarray(self.wavelength_nm if wavelengths_nm is None else wavelengths_nm, float))
     random = np.random.default_rng(seed)
-    film_z, last_z = lens.film_position_mm, lens.film_position_mm - lens.film_distance_mm
-    corner = float(np.hypot(*lens.film_mm)) / 2
+    film_z, last_z = self.film_position_mm, self.film_position_mm - self.film_distance_mm
+    corner = float(np.hypot(*self.film_mm)) / 2
     film = _in_disc(random, rays, corner)
-    side = _in_disc(random, rays, _last_radius(lens, corner))
+    side = _in_disc(random, rays, _last_radius(self, corner))
     towards = np.column_stack([side - film, np.full(rays, last_z - film_z)])
     towards /= np.linalg.norm(towards, axis=1)[:, None]
     wavelength = random.choice(waves, rays)
@@ -166,7 +166,7 @@ def save_rays(
     start = np.column_stack([film, np.full(rays, film_z)])
     for wave in np.unique(wavelength):
         here = wavelength == wave
-        traced = lens.trace(start[here], towards[here], wavelength_nm=float(wave), transmission=True)
+        traced = self.trace(start[here], towards[here], wavelength_nm=float(wave), transmission=True)
         origin[here], direction[here], status[here] = traced.origins_mm, traced.directions, traced.status
         transmission[here] = traced.transmission
     ok = status == RayStatus.OK
@@ -175,14 +175,14 @@ def save_rays(
         origin[ok] -= (origin[ok, 2] / direction[ok, 2])[:, None] * direction[ok]
     meta = {
         "format": FORMAT,
-        "lens": lens.name,
-        "f_number": lens.f_number,
-        "focus_distance_m": lens.focus_distance_m if np.isfinite(lens.focus_distance_m) else None,
-        "focal_length_mm": lens.first_order().effective_focal_length_mm,
+        "lens": self.name,
+        "f_number": self.f_number,
+        "focus_distance_m": self.focus_distance_m if np.isfinite(self.focus_distance_m) else None,
+        "focal_length_mm": self.first_order().effective_focal_length_mm,
         "film_plane_z_mm": film_z,
         "film_side_reference_z_mm": last_z,
         "object_side_reference_z_mm": 0.0,
-        "film_size_mm": list(lens.film_mm),
+        "film_size_mm": list(self.film_mm),
         "wavelengths_nm": waves.tolist(),
         "axes": "z along the light, from the scene to the film, 0 at the front vertex; the image is inverted",
         "status": {item.name: int(item) for item in RayStatus},

@@ -233,7 +233,7 @@ class RayPairLens:
                 f"the film reaches {reach:.4g} mm from the axis, but rays were measured up to "
                 f"{self.fit_report.film_radius_mm:.4g} mm"
             )
-        return Camera(table.paraxial_lens, film=film, model="polynomial", ray_pairs=table, **settings)
+        return Camera(table, film=film, model="polynomial", **settings)
 
     def _checked(self, wavelength_nm: float | None) -> float:
         shortest, longest = self.wavelengths_nm

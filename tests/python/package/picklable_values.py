@@ -118,6 +118,29 @@ def calibrated_geometry(**more: Any) -> Any:
     )
 
 
+def ray_pair_table(**more: Any) -> Any:
+    """Ideal lens of 50 mm in focus at infinity, whose stop is 5 mm in front of the plane behind the lens, z = 0."""
+    linear = np.zeros((1, 3, 2), np.float32)
+    linear[0, :2] = [[0, 10], [-0.2, 0]]
+    discs = np.zeros((1, 4, 2), np.float32)
+    discs[0, 0] = -0.5, 2.5
+    values: dict[str, Any] = {
+        "name": "ideal",
+        "wavelength_nm": 550,
+        "length_mm": 10,
+        "film_distance_mm": 50,
+        "focus_distance_m": np.inf,
+        "film_mm": (10, 10),
+        "film_radius_mm": 10,
+        "last_radius_mm": 10,
+        "plane_mm": 5,
+        "degree": 0,
+        "coefficients": linear,
+        "discs": discs,
+    }
+    return _core.RayPairTable(**{**values, **more})
+
+
 MAKERS: dict[str, list[Callable[[], Any]]] = {
     "Glass": [lambda: rc.Glass.named("N-BK7"), lambda: rc.Glass.constant(1.5), lambda: rc.Glass.table([(500, 1.5)])],
     "Surface": [
@@ -153,6 +176,7 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
         lambda: calibrated_geometry(),
         lambda: calibrated_geometry(gain=np.ones((2, 3), np.float32), defined=np.ones((4, 4), bool)),
     ],
+    "RayPairTable": [lambda: ray_pair_table(), lambda: ray_pair_table(focus_distance_m=2.0)],
     "Film": [lambda: rc.Film(), lambda: rc.Film(resolution=(960, 641))],
     "CameraKey": [
         lambda: rc.CameraKey(1, focus_m=2, f_number=4, interpolation="smooth"),

@@ -18,6 +18,7 @@ from .picklable_values import MAKERS, camera, floor_scene, lens, scene
 
 UNHASHABLE = {
     "CalibratedGeometry",
+    "RayPairTable",
     "CoatingResponse",
     "Scene",
     "Spot",
