@@ -30,7 +30,7 @@ def mitsuba_rays() -> ModuleType:
 
 
 def test_headlights_glow_in_fog(tmp_path: Path) -> None:
-    picture = tmp_path / "fog.exr"
+    picture = tmp_path / "fog.png"
     command = [sys.executable, EXAMPLES / "headlights.py", picture, "--width", "96", "--spp", "4"]
     subprocess.run([str(part) for part in command], check=True, capture_output=True, timeout=300)
     values = rc.read_environment(picture).sum(axis=2)
