@@ -3078,7 +3078,7 @@ class Scene:
         anisotropy: mean cosine of the scattering angle in the phase function of Henyey and Greenstein, -0.99 to 0.99.
         margin_m: distance by which the air extends beyond the bounding box of the scene's geometry. None: unlimited or, if the
           scene has a sun or an environment, half of the visibility.
-        Raises InputError. See docs/fog.md.
+        Raises InputError. docs/fog.md describes the model.
         """
     def with_daylight(self, camera: Camera) -> Scene:
         """

@@ -201,7 +201,7 @@ albedo: fraction of the extinction that is scattering, a number or (r, g, b), 0 
 anisotropy: mean cosine of the scattering angle in the phase function of Henyey and Greenstein, -0.99 to 0.99.
 margin_m: distance by which the air extends beyond the bounding box of the scene's geometry. None: unlimited or, if the
   scene has a sun or an environment, half of the visibility.
-Raises InputError. See docs/fog.md.)")
+Raises InputError. docs/fog.md describes the model.)")
         .def_property_readonly("triangle_count", &Assembly::triangle_count,
                                "Number of triangles of the static geometry and all instances.")
         .def_property_readonly(
