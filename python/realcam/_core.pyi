@@ -672,25 +672,6 @@ class Lens:
         Raises LensFileError with file, line and surface, and InputError if glass contains a name that is not in the file.
         Missing values that are computed or assumed cause a UserWarning.
         """
-    @staticmethod
-    def save_rays(
-        lens: Lens,
-        path: str | os.PathLike[str],
-        *,
-        rays: int = 20000,
-        wavelengths_nm: ArrayLike | None = None,
-        seed: int = 0,
-    ) -> None:
-        """
-        Writes rays of a lens, at its current focus and stop, to an .npz file of the format ray-pairs/1.
-
-        Film points are uniform over the circle about the film, and the points in the plane of the last vertex over a disc
-        through which all light passes. Blocked rays are stored, too, because vignetting is fitted to them.
-        rays: their number. wavelengths_nm: of which each ray has one, at random; None: the design wavelength. seed: of the
-        random numbers.
-
-        Raises InputError for a lens without rotational symmetry or with a curved film, and ImageFileError.
-        """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     def __init__(
@@ -1039,6 +1020,19 @@ class Lens:
         .zmx, .seq, .json (Optiland) or .roa (ray-optics), with a UserWarning for each property that the format cannot
         represent; .osl, a camera shader for Blender 5. Raises InputError for an unknown suffix, and for a lens that the shader
         cannot represent; ImageFileError if the file cannot be written.
+        """
+    def save_rays(
+        self, path: str | os.PathLike[str], *, rays: int = 20000, wavelengths_nm: ArrayLike | None = None, seed: int = 0
+    ) -> None:
+        """
+        Writes rays of a lens, at its current focus and stop, to an .npz file of the format ray-pairs/1.
+
+        Film points are uniform over the circle about the film, and the points in the plane of the last vertex over a disc
+        about the light of the film point. Blocked rays are stored, too, because vignetting is fitted to them.
+        rays: their number. wavelengths_nm: of which each ray has one, at random; None: the design wavelength. seed: of the
+        random numbers.
+
+        Raises InputError for a lens without rotational symmetry or with a curved film, and ImageFileError.
         """
     def scaled(self, factor: float) -> Lens:
         """
@@ -2287,7 +2281,7 @@ class RayPairTable:
     @property
     def paraxial_lens(self) -> Lens:
         """
-        Lens of three thin elements with the same first-order data, which Camera(lens=...) takes together with ray_pairs.
+        Lens of three thin elements with the same first-order data: Camera.lens of a camera with this table.
         """
     @property
     def wavelength_nm(self) -> float:
@@ -2311,7 +2305,7 @@ class Camera:
     def __deepcopy__(self, memo: object) -> Self: ...
     def __init__(
         self,
-        lens: Lens,
+        lens: Lens | RayPairTable,
         *,
         film: Film | None = None,
         position: _Triple = [0.0, 0.0, 0.0],
@@ -2324,10 +2318,10 @@ class Camera:
         readout_time_s: float = 0.0,
         motion: Sequence[tuple[float, _Triple, _Triple] | tuple[float, _Triple, _Triple, _Triple]] = [],
         geometry: CalibratedGeometry | None = None,
-        ray_pairs: RayPairTable | None = None,
     ) -> None:
         """
-        lens: the Lens. film: a Film; None: that of the lens.
+        lens: the Lens, or the RayPairTable of a RayPairLens, which needs the model "polynomial".
+        film: a Film; None: that of the lens.
         position, look_at: (x, y, z) in metres, scene. up: the upward direction.
         exposure_time_s: exposure time of each pixel. iso: sensitivity (ISO 12232).
         model: camera model: "full" (ray trace through every surface), "thick" (paraxial matrix), "mapped" (an ideal lens with
@@ -2337,8 +2331,6 @@ class Camera:
         motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in increasing order of time, instead of
           position, look_at and up, which then become those at time 0. Between keys the camera moves uniformly.
         geometry: the CalibratedGeometry of a calibration (Calibration.camera) for this film; None: that of the lens.
-        ray_pairs: the RayPairTable of a RayPairLens, whose paraxial_lens is `lens` and whose model is "polynomial"; made by
-          RayPairLens.camera. None: rays are those of the lens's surfaces.
         Raises InputError.
         """
     def framing(
