@@ -1035,7 +1035,7 @@ class Lens:
         Writes rays of a lens, at its current focus and stop, to an .npz file of the format ray-pairs/1.
 
         Film points are uniform over the circle about the film, and the points in the plane of the last vertex over a disc
-        through which all light passes. Blocked rays are stored, too, because vignetting is fitted to them.
+        about the light of the film point. Blocked rays are stored, too, because vignetting is fitted to them.
         rays: their number. wavelengths_nm: of which each ray has one, at random; None: the design wavelength. seed: of the
         random numbers.
 

@@ -25,6 +25,10 @@ LEAST_NM = 250.0  # above the pole of the wavelength variable (polynomial_fit.py
 _COLUMNS = {"wavelength_nm": 0, "film_mm": 2, "film_side_mm": 2, "object_origin_mm": 3, "object_direction": 3, "ok": 0}
 _WIDE_COSINE = 0.05  # of the angle to the axis, below which a ray crosses a plane far from the lens
 
+_FIELDS = 33  # film radii at which the light behind the lens is found
+_AROUND = 1.4  # size of the discs of points, relative to the light in them
+_LEAST_REACH = 0.1  # of their sizes, where rims leave little light
+
 Array = NDArray[np.float64]
 
 
@@ -141,7 +145,7 @@ def save_rays(
     """Writes rays of a lens, at its current focus and stop, to an .npz file of the format ray-pairs/1.
 
     Film points are uniform over the circle about the film, and the points in the plane of the last vertex over a disc
-    through which all light passes. Blocked rays are stored, too, because vignetting is fitted to them.
+    about the light of the film point. Blocked rays are stored, too, because vignetting is fitted to them.
     rays: their number. wavelengths_nm: of which each ray has one, at random; None: the design wavelength. seed: of the
     random numbers.
 
@@ -152,12 +156,16 @@ def save_rays(
         raise InputError(f"rays must lie between 1 and {_MOST_RAYS}")
     if not self.is_rotational or np.isfinite(self.film_radius_of_curvature_mm):
         raise InputError("ray pairs need a rotationally symmetric lens with a flat film")
+    if abs(self.first_order().image_index - 1) > 1e-3:
+        raise InputError("ray pairs need a lens with air in front of the film")
     waves = np.atleast_1d(np.asarray(self.wavelength_nm if wavelengths_nm is None else wavelengths_nm, float))
+    if waves.ndim != 1 or not waves.size:
+        raise InputError("wavelengths_nm must be a list of wavelengths")
     random = np.random.default_rng(seed)
     film_z, last_z = self.film_position_mm, self.film_position_mm - self.film_distance_mm
     corner = float(np.hypot(*self.film_mm)) / 2
     film = _in_disc(random, rays, corner)
-    side = _in_disc(random, rays, _last_radius(self, corner))
+    side = _around_light(self, film, corner, _in_disc(random, rays, 1.0))
     towards = np.column_stack([side - film, np.full(rays, last_z - film_z)])
     towards /= np.linalg.norm(towards, axis=1)[:, None]
     wavelength = random.choice(waves, rays)
@@ -209,10 +217,24 @@ def _in_disc(random: np.random.Generator, count: int, radius: float) -> Array:
     return np.column_stack([r * np.cos(angle), r * np.sin(angle)])
 
 
-def _last_radius(lens: Lens, corner: float) -> float:
-    """Returns the largest distance from the axis at which a ray from the film to the last rim crosses the plane of the
-    last vertex."""
-    last = lens.surfaces[-1]
-    rim = last.clear_semi_diameter_mm
-    sag = last.sag_mm(rim)
-    return rim + abs(sag) * (rim + corner) / max(lens.film_distance_mm - max(sag, 0.0), 1e-3)
+def _around_light(lens: Lens, film: Array, corner: float, disc: Array) -> Array:
+    """Returns points of the plane of the last vertex, (N, 2), in discs about the light of film points (N, 2).
+
+    disc: points of the unit disc. Raises InputError if no light reaches the film.
+    """
+    lit, centres, reaches = [], [], []
+    for radius in np.linspace(0, corner, _FIELDS):
+        cosines = lens.film_pupil((radius, 0.0)).outline.reshape(-1, 2)
+        if not len(cosines):
+            continue
+        slopes = cosines / np.sqrt(1 - (cosines**2).sum(1))[:, None]
+        points = [radius, 0] - lens.film_distance_mm * slopes
+        lit.append(radius)
+        centres.append((points[:, 0].min() + points[:, 0].max()) / 2)
+        reaches.append(np.hypot(points[:, 0] - centres[-1], points[:, 1]).max())
+    if not lit:
+        raise InputError("no light reaches the film of the lens")
+    radii = np.hypot(*film.T)
+    outwards = film / np.maximum(radii, 1e-12)[:, None]
+    reach = np.maximum(np.interp(radii, lit, reaches), _LEAST_REACH * max(reaches))
+    return np.asarray(np.interp(radii, lit, centres)[:, None] * outwards + (_AROUND * reach)[:, None] * disc)

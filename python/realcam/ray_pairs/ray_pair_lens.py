@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +28,7 @@ _WORTHWHILE = 0.8  # factor by which the error of a higher degree must be smalle
 _WIDE_COSINE = -0.5  # of rays to the axis: beyond 60 degrees a plane is a bad reference of positions
 _LEAST_CHIEF_SLOPE = 0.1  # height of the chief ray in the plane behind the lens, per height on the film
 _FAR = 100  # times the length of the lens: an entrance pupil beyond counts as one at infinity
+_FRONT_DISTANCES = (0.0, 0.1, 0.3, 1.0, 3.0)  # of the front vertex from the pupil, in lengths of the lens
 _FIELD_MARGIN = 1.002  # the light may end that much beyond the outermost ray that passes
 _EDGE = 0.99  # of the measured disc; if rays beyond pass, the disc may not have covered the light
 
@@ -329,7 +330,6 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
             UserWarning,
             stacklevel=3,
         )
-    front_z = min(object_z, pupil_z - 0.1 * abs(last_z - object_z))
     report = RayPairFit(
         degree=2 * best.degree + 1,
         rays=len(ok),
@@ -352,13 +352,27 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
         _film_z_mm=pairs.film_z_mm,
         _side_z_mm=pairs.film_side_z_mm,
         _last_z_mm=last_z,
-        _front_z_mm=front_z,
+        _front_z_mm=object_z,
         _plane_z_mm=pupil_z,
         _polynomials=best,
         _discs=discs,
         _last_radius_mm=last_radius,
     )
-    lens.table()
+    return _with_front(lens, min(object_z, pupil_z), last_z)
+
+
+def _with_front(lens: RayPairLens, front_z: float, last_z: float) -> RayPairLens:
+    """Returns the lens with the front vertex where its table needs it: so far in front that chief rays cross the axis
+    behind it. Raises InputError if there is no such point."""
+    for distance in _FRONT_DISTANCES:
+        found = replace(lens, _front_z_mm=front_z - distance * (last_z - front_z))
+        try:
+            found.table()
+        except InputError:
+            if distance == _FRONT_DISTANCES[-1]:
+                raise
+        else:
+            return found
     return lens
 
 
