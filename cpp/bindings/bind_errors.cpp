@@ -81,7 +81,7 @@ void bind_errors(py::module_& m) {
           "Internal. Starts (True) or ends (False) recording which files are read.");
     m.def(
         "_record_input", [](const py::bytes& path) { (void)io::why_unreadable(path); }, "path"_a,
-        "Internal. Records that a file is read, see _record_inputs.");
+        "Internal. Adds a file to the recorded input files.");
     m.def(
         "_check_no_input", [](const py::bytes& output) { image_io::check_is_not_an_input(output); }, "output"_a,
         "Internal. Raises an error if the output file is one of the recorded input files.");

@@ -63,7 +63,7 @@ def _record_inputs(is_on: bool) -> None:
 
 def _record_input(path: bytes) -> None:
     """
-    Internal. Records that a file is read, see _record_inputs.
+    Internal. Adds a file to the recorded input files.
     """
 
 def _check_no_input(output: bytes) -> None:

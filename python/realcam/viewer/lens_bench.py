@@ -132,9 +132,12 @@ class LensBench:
 
     def set_resolution(self, width: int) -> bool:
         """Sets the width of the picture in pixels; its height follows from the film's size."""
-        controls = self.controls
-        film = of_width(controls.film, width, controls.pixel_aspect)
-        return self._apply(lambda: replace(controls, film=film), view="picture")
+
+        def changed() -> CameraControls:
+            controls = self.controls
+            return replace(controls, film=of_width(controls.film, width, controls.pixel_aspect))
+
+        return self._apply(changed, view="picture")
 
     def set_film_mm(self, width_mm: float, height_mm: float) -> bool:
         """Sets the film's size; the picture keeps its width in pixels. Can be undone."""

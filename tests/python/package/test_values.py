@@ -90,7 +90,7 @@ def test_a_short_text_fits_a_line(kind: str) -> None:
     for make in MAKERS[kind]:
         text = repr(make())
         assert "\n" not in text
-        if kind == "RenderSettings":  # can be evaluated, and so names everything that differs from the default
+        if kind in ("RenderSettings", "OcioView"):  # can be evaluated, and so name all that differs from the default
             continue
         assert text.startswith(f"<realcam.{kind}")
         assert len(text) <= 130, text
