@@ -48,6 +48,7 @@ GROUPS = {
     "Sensors": ("Sensor", "RawImage", "sensor_names"),
     "Rigs": ("Rig", "RigCamera"),
     "Calibrations": ("Calibration", "PointStatus", "GeometryError", "Vignetting", "CalibrationFileError"),
+    "Lenses of rays": ("RayPairLens",),
     "Vision": (
         "ProjectionStatus", "CameraModelFit", "fit_camera_model", "camera_json", "save_camera_json", "save_colmap",
         "OpticalFlow", "optical_flow",

@@ -18,6 +18,7 @@ from ..files import check_target
 from .passing_fit import Booleans, fitted_discs, inside, stop_near_axis
 from .polynomial_fit import Array, RayPolynomials, WavelengthScale, evaluated, fitted
 from .ray_file import LEAST_NM, RayPairs, read_ray_pairs
+from .reference_surfaces import at_plane, at_sphere, distances, largest_distance, outermost, plane_behind
 
 _FORMAT = "ray-pair-lens/1"
 _LIMIT_BYTES = 64 << 20
@@ -26,7 +27,6 @@ _LEAST_PASSING = 200
 _MOST_FITTED = 40000  # rays to which polynomials are fitted; their columns take 200 MB
 _WORTHWHILE = 0.8  # factor by which the error of a higher degree must be smaller
 _WIDE_COSINE = -0.5  # of rays to the axis: beyond 60 degrees a plane is a bad reference of positions
-_LEAST_CHIEF_SLOPE = 0.1  # height of the chief ray in the plane behind the lens, per height on the film
 _FAR = 100  # times the length of the lens: an entrance pupil beyond counts as one at infinity
 _FRONT_DISTANCES = (0.0, 0.1, 0.3, 1.0, 3.0)  # of the front vertex from the pupil, in lengths of the lens
 _FIELD_MARGIN = 1.002  # the light may end that much beyond the outermost ray that passes
@@ -283,9 +283,9 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
     train = train[np.argsort(random[train])[:_MOST_FITTED]]
     if len(train) < _LEAST_PASSING or not len(test):
         raise InputError(f"{ok.sum()} rays pass the lens; at least {_LEAST_PASSING / (1 - _HELD_OUT):g} are needed")
-    film_radius, last_z, last = _outermost(pairs.film_mm), *_plane_behind(pairs)
-    light_radius = min(film_radius, _FIELD_MARGIN * _outermost(pairs.film_mm[ok]))
-    last_radius = _outermost(last[ok]) * _FIELD_MARGIN
+    film_radius, last_z, last = outermost(pairs.film_mm), *plane_behind(pairs)
+    light_radius = min(film_radius, _FIELD_MARGIN * outermost(pairs.film_mm[ok]))
+    last_radius = outermost(last[ok]) * _FIELD_MARGIN
     x, p = pairs.film_mm / light_radius, last / last_radius
     waves = np.unique(pairs.wavelength_nm)
     scale = WavelengthScale(float(waves[0]), float(waves[-1]))
@@ -301,16 +301,16 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
     is_wide = bool(direction[ok, 2].max() > _WIDE_COSINE)
     object_z = float(np.median(origin[ok, 2]))
     chief = 1e-3 * np.eye(1, 2), 1e-3 * stop_near_axis(x, p, ok)[0] * np.eye(1, 2)
-    near_axis = fit(_at_plane(origin[train], direction[train], object_z), 2, False)
+    near_axis = fit(at_plane(origin[train], direction[train], object_z), 2, False)
     chief_point, chief_direction = (values[0] for values in evaluated(near_axis, *chief, np.zeros(1)))
     with np.errstate(divide="ignore"):
         pupil_z = float(object_z - chief_point[0] * chief_direction[2] / chief_direction[0])
     if not abs(pupil_z - object_z) < _FAR * (pairs.film_z_mm - object_z):
         pupil_z = object_z
-    radius = max(abs(pupil_z - object_z), 1.2 * _largest_distance(origin[ok], direction[ok], pupil_z))
+    radius = max(abs(pupil_z - object_z), 1.2 * largest_distance(origin[ok], direction[ok], pupil_z))
 
     at, towards = origin[train], direction[train]
-    position = _at_sphere(at, towards, pupil_z, radius) if is_wide else _at_plane(at, towards, pupil_z)
+    position = at_sphere(at, towards, pupil_z, radius) if is_wide else at_plane(at, towards, pupil_z)
     best, errors = None, np.array([np.inf])
     for degree in range(1, largest_degree + 1):
         found = fit(position, degree, is_wide)
@@ -320,9 +320,9 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
             best, errors = found, angles
     assert best is not None
     fitted_position = evaluated(best, x[test], p[test], variable[test])[0]
-    distance = _distances(origin[test], direction[test], fitted_position, pupil_z)
+    distance = distances(origin[test], direction[test], fitted_position, pupil_z)
     decided = inside(discs, x, p) & (np.hypot(*x.T) <= 1) & (np.hypot(*p.T) <= 1)
-    measured_pupil = _outermost(pairs.film_side_mm)
+    measured_pupil = outermost(pairs.film_side_mm)
     if (np.hypot(*pairs.film_side_mm[ok].T) > _EDGE * measured_pupil).any():
         warnings.warn(
             "rays at the edge of the measured disc behind the lens pass: light beyond it was not measured, and counts "
@@ -374,46 +374,3 @@ def _with_front(lens: RayPairLens, front_z: float, last_z: float) -> RayPairLens
         else:
             return found
     return lens
-
-
-def _outermost(points: Array) -> float:
-    return float(np.hypot(*points.T).max())
-
-
-def _plane_behind(pairs: RayPairs) -> tuple[float, Array]:
-    """Returns z of the plane behind the lens and the points of the rays in it, (N, 2): the plane of film_side_mm, or
-    one nearer to the film, where the chief ray has crossed the axis."""
-    ok = pairs.ok
-    radius = np.hypot(*pairs.film_mm.T)
-    near = ok & (radius < 0.3 * radius[ok].max())
-    near = near if near.any() else ok
-    slope = float((pairs.film_mm[near] * pairs.film_side_mm[near]).sum() / (pairs.film_mm[near] ** 2).sum())
-    share = (_LEAST_CHIEF_SLOPE - slope) / (1 - slope) if slope < 0.5 * _LEAST_CHIEF_SLOPE else 0.0
-    points = pairs.film_side_mm + share * (pairs.film_mm - pairs.film_side_mm)
-    return pairs.film_side_z_mm + share * (pairs.film_z_mm - pairs.film_side_z_mm), points
-
-
-def _at_plane(origin: Array, direction: Array, z: float) -> Array:
-    crossing: Array = origin + ((z - origin[:, 2]) / direction[:, 2])[:, None] * direction
-    return crossing
-
-
-def _largest_distance(origin: Array, direction: Array, z: float) -> float:
-    """Returns the largest distance of the rays from the point (0, 0, z)."""
-    return float(np.linalg.norm(np.cross(origin - (0, 0, z), direction), axis=1).max())
-
-
-def _at_sphere(origin: Array, direction: Array, z: float, radius: float) -> Array:
-    """Returns the points at which rays leave the sphere about (0, 0, z)."""
-    offset = origin - (0, 0, z)
-    along = (offset * direction).sum(1)
-    reach = np.sqrt(radius**2 - (offset**2).sum(1) + along**2)
-    leaving: Array = origin + (reach - along)[:, None] * direction
-    return leaving
-
-
-def _distances(origin: Array, direction: Array, found: Array, plane_z: float) -> Array:
-    """Returns the distances of the fitted positions from the rays, (N,)."""
-    at = np.column_stack([found[:, :2], np.where(np.isnan(found[:, 2]), plane_z, found[:, 2])])
-    distances: Array = np.linalg.norm(np.cross(at - origin, direction), axis=1)
-    return distances

@@ -64,11 +64,11 @@ def calibrated_geometry(**more: Any) -> Any:
 
 
 def ray_pair_table(**more: Any) -> Any:
-    """Ideal lens of 50 mm in focus at infinity, whose stop is 5 mm in front of the plane behind the lens, z = 0."""
-    linear = np.zeros((1, 3, 2), np.float32)
-    linear[0, :2] = [[0, 10], [-0.2, 0]]
-    discs = np.zeros((1, 4, 2), np.float32)
-    discs[0, 0] = -0.5, 2.5
+    """Ideal thin lens of 55 mm in focus at infinity, 5 mm in front of the last vertex; its rim is the stop."""
+    linear, discs = np.zeros((1, 3, 2), np.float32), np.zeros((1, 4, 2), np.float32)
+    linear[0, 0] = -1, 11  # point on the lens, 1.1 p - 0.1 x, with x and p in units of 10 mm
+    linear[0, 1] = -10 / 55, 0  # direction, that of the film point through the centre of the lens
+    discs[0, 0] = linear[0, 0] / 4
     values: dict[str, Any] = {
         "name": "ideal",
         "wavelength_nm": 550,

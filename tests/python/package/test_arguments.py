@@ -19,7 +19,7 @@ SCENE = rc.Scene.from_arrays([(0, 0, -2), (1, 0, -2), (0, 1, -2)], [(0, 1, 2)]).
 WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: rc.Camera(LENS, position="abc"), "position must be three numbers; it is 'abc'"),
     (lambda: rc.Camera(LENS, look_at=(1, 2, None)), "look_at must be three numbers; it is (1, 2, None)"),
-    (lambda: rc.Camera("tessar-50mm"), "lens must be a Lens; it is 'tessar-50mm'"),
+    (lambda: rc.Camera("tessar-50mm"), "lens must be a Lens or a RayPairTable; it is 'tessar-50mm'"),
     (lambda: rc.Camera(), "Camera() needs the argument lens"),
     (lambda: rc.Camera(LENS, isoo=3), "Camera() has no argument isoo; is iso meant?"),
     (lambda: rc.Camera(LENS, lens=LENS), "Camera() has the argument lens twice"),
