@@ -28,6 +28,11 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "lens compare": ("realcam lens compare tessar-50mm sonnar-50mm --mtf 10,30 -o both.svg",),
     "lens convert": ("realcam lens convert tessar-50mm -o tessar.zmx",),
+    "lens rays": (
+        "realcam lens rays double-gauss-50mm -o rays.npz --f-number 4 --focus inf",
+        "realcam lens rays mine.zmx -o rays.npz --rays 100000 --wavelengths 486,588,656",
+    ),
+    "lens fit": ("realcam lens fit rays.npz -o black-box.npz",),
     "lens blender": ("realcam lens blender -o realcam-lenses.zip",),
     "lens gallery": (
         "realcam lens gallery -o lenses.png",
