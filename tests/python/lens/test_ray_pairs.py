@@ -84,12 +84,12 @@ def test_first_order_is_that_of_the_lens(lens: rc.Lens, fitted: rc.RayPairLens) 
     assert ours.entrance_pupil_position_mm == pytest.approx(theirs.entrance_pupil_position_mm, abs=1.0)
 
 
-def test_camera_takes_the_lens_pictures(lens: rc.Lens, fitted: rc.RayPairLens) -> None:
+def test_camera_takes_the_lens_pictures(lens: rc.Lens, fitted: rc.RayPairLens, device: str) -> None:
     film = rc.Film(36, 24, (90, 60))
     scene = wall()
     view = {"film": film, "position": (0, 0, 2), "exposure_time_s": 0.01}
     by_rays, by_surfaces = fitted.camera(**view), rc.Camera(lens, **view)
-    settings: dict[str, Any] = {"spp": 64, "device": "cpu"}
+    settings: dict[str, Any] = {"spp": 64, "device": device}
     ours, theirs = (rc.render(scene, camera, **settings).pixels for camera in (by_rays, by_surfaces))
     # The same random numbers give noise that is alike; half a percent of the rays are decided otherwise.
     assert ours.mean() == pytest.approx(theirs.mean(), rel=0.005)
@@ -110,11 +110,11 @@ def test_projection_is_that_of_the_lens(lens: rc.Lens, fitted: rc.RayPairLens) -
         by_rays.ray(pixels, through="chief")
 
 
-def test_layers_are_those_of_the_lens(lens: rc.Lens, fitted: rc.RayPairLens) -> None:
+def test_layers_are_those_of_the_lens(lens: rc.Lens, fitted: rc.RayPairLens, device: str) -> None:
     scene = wall()
     view = {"film": rc.Film(36, 24, (30, 20))}
     depths = [
-        rc.render(scene, camera, spp=1, layers="depth_middle", device="cpu").layers["depth_middle"]
+        rc.render(scene, camera, spp=1, layers="depth_middle", device=device).layers["depth_middle"]
         for camera in (fitted.camera(**view), rc.Camera(lens, **view))
     ]
     np.testing.assert_allclose(depths[0], depths[1], rtol=1e-4)
