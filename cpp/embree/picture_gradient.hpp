@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -66,8 +67,13 @@ public:
 
 private:
     static constexpr std::size_t kOtherNumbers = 13;
+    static constexpr int kLanes = 256;  ///< film samples per block
+    static constexpr int kRays = TangentPath::kLanes;  ///< rays with tangents per block
     class Row;
     class FilmRows;
+    struct SampleLight;
+    struct RayBlock;
+    struct OutlineBlock;
     struct EmbreeParts;
 
     /// Camera whose film extends past the picture's border by the pixels of the margin, from which light counts for
@@ -84,6 +90,10 @@ private:
     WavelengthsInDouble wavelengths(const float* variable) const;
     /// Returns the address of `many`, or null if the camera has no dispersion.
     const WavelengthsInDouble* if_dispersed(const WavelengthsInDouble& many) const;
+    /// Traces a block of rays from the film with their tangents.
+    void trace_film(RayBlock& block, TangentPath::Sums& sums) const;
+    /// Traces a block of rays on the outline, with the rims' tangents times the weight of each ray.
+    void trace_outline(OutlineBlock& block, const std::array<double, kRays>& weights, TangentPath::Sums& sums) const;
     // Ray at the film, in the double precision of its tangent.
     Vec3d film_origin(Vec3f origin) const;
     Vec3d film_direction(Vec3f direction) const;

@@ -1,0 +1,279 @@
+#pragma once
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "../render/gradients/film_radiance.hpp"
+#include "embree_scene.hpp"
+#include "packet_scene.hpp"
+#include "picture_gradient.hpp"
+
+// Samples of PictureGradient: those of one row of its film, in blocks, and the rays of which tangents are traced.
+
+namespace realcam {
+
+/// Light of a sample on the film, or on the outline of the pupil.
+struct PictureGradient::SampleLight {
+    Vec2f pixel;  ///< film point, in pixels of the picture
+    Color light;  ///< weight times radiance
+    float weight;
+    float variable;  ///< WavelengthVariable of the sample, if the camera has dispersion
+};
+
+/// Rays that wait until a block of them can be traced with their tangents.
+struct PictureGradient::RayBlock {
+    TangentPath::Rays rays;
+    SampleLight lights[kRays];
+    float variable[kRays];
+    int count = 0;
+
+    /// Adds a ray at the film. Lanes that are not filled hold copies of the last ray, whose tangents are 0.
+    void add(const SampleLight& light, Vec3d origin, Vec3d direction) {
+        for (int i = count; i < kRays; ++i) {
+            rays.origin.set(i, origin);
+            rays.direction.set(i, direction);
+            rays.direction_tangent.set(i, {0, 0, 0});
+            rays.status[i] = 0;
+            variable[i] = light.variable;
+        }
+        lights[count++] = light;
+    }
+    /// Sets the tangent of a ray by the light's direction cosines at the film, which are opposite to the ray's.
+    void set_tangent(int lane, Vec2d w) {
+        const Vec3d p = rays.direction[lane];
+        rays.direction_tangent.set(lane, {-w.x, -w.y, (p.x * w.x + p.y * w.y) / p.z});
+    }
+};
+
+/// Rays that graze a rim, with the light that they bring.
+struct PictureGradient::OutlineBlock {
+    TangentPath::Rays rays;
+    const OutlinePoint* points[kRays];
+    SampleLight lights[kRays];
+    int count;  ///< lanes in use; the others hold copies of the last ray
+};
+
+/// The scene, and the device of Embree that holds it.
+struct PictureGradient::EmbreeParts {
+    struct ReleaseDevice {
+        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+    };
+
+    std::unique_ptr<RTCDeviceTy, ReleaseDevice> device{new_embree_device()};
+    std::atomic<bool> stop{false};  ///< never set: the construction is not interrupted
+    EmbreeScene scene;
+
+    EmbreeParts(const Assembly& of, const Camera& camera)
+        : scene(device.get(), of, position_when_open(camera), camera.exposure(), stop) {}
+};
+
+/// Samples of one row of the extended film, with working memory.
+class PictureGradient::Row {
+public:
+    Row(const PictureGradient& of, const GradientSamples& samples, int row)
+        : of_(of),
+          samples_(samples),
+          row_(row),
+          scene_view_(of.embree_->scene.placed().view()),
+          scene_{of.embree_->scene.handle(), static_cast<std::uint32_t>(scene_view_.instance_count), RayOrder::coherent,
+                 0} {}
+
+    /// Calls f(lane, light of its sample, samples) for blocks of samples on the film, for the lanes whose rays pass.
+    template <class F>
+    void for_film_samples(F&& f) {
+        SampleBlock<kLanes> block;
+        FilmSamples<kLanes> film;
+        PathResults<kLanes> results;
+        for_blocks(samples_.spp, samples_.seed, block, [&](int) {
+            if (needs_general_lens_code(of_.view_))
+                sample_film<LensKind::any>(of_.view_, block, film);
+            else
+                sample_film<LensKind::rotational>(of_.view_, block, film);
+            trace(block, film.rays, film.time, results);
+            for (int i = 0; i < kLanes; ++i)
+                if (film.rays.passed[i])
+                    f(i,
+                      SampleLight{in_picture(film.pixel[i]),
+                                  on_film(results.irradiance[i], film.wavelengths.cell_position[i]),
+                                  film.rays.weight[i], film.variable[i]},
+                      film);
+        });
+    }
+
+    /// Calls f(OutlineBlock&) for blocks of samples on the outline of the pupil.
+    template <class F>
+    void for_outline_samples(F&& f) {
+        SampleBlock<kLanes> block;
+        constexpr std::uint32_t kSalt = 0x6f75746cu;  // samples of the outline are independent of those of the film
+        for_blocks(samples_.outline_spp, hash32(samples_.seed, kSalt), block, [&](int used) {
+            const PixelPoints<kLanes> film(of_.view_, block);
+            const LaneNumbers<kLanes> u(block, dimension::pupil);
+            FilmSamples<kLanes> samples;
+            if (of_.view_.effects.dispersion) sample_wavelengths(of_.view_, block, samples);
+            std::vector<Edge> edges;
+            for (int first = 0; first < used; first += kRays) find_edges(block, film, u, samples, first, used, edges);
+            for (std::size_t first = 0; first < edges.size(); first += kLanes)
+                shade_edges(block, edges, first, std::min<std::size_t>(kLanes, edges.size() - first), f);
+        });
+    }
+
+    std::int64_t unexplained = 0, edge_count = 0;
+
+private:
+    /// Edge of the pupil at a film point.
+    struct Edge {
+        int lane;  ///< lane of its sample
+        Vec2f pixel;  ///< film point, in pixels of the picture
+        double weight;  ///< inverse density
+        float variable, cell_position;  ///< of the sample's wavelength, if the camera has dispersion
+        DirectionLine line;
+        OutlinePoint point;
+    };
+
+    Vec2f in_picture(Vec2f pixel) const {
+        const auto margin = static_cast<float>(of_.margin_);
+        return {pixel.x - margin, pixel.y - margin};
+    }
+
+    /// Colour on the film of the irradiance of a sample with a wavelength; without dispersion, the irradiance itself.
+    Color on_film(Color irradiance, float cell_position) const {
+        if (!of_.view_.effects.dispersion || samples_.uniform) return irradiance;
+        return film_color(of_.view_.dispersion, cell_position, irradiance);
+    }
+
+    /// Calls f(number of lanes in use) for blocks of samples of the row's pixels.
+    template <class F>
+    void for_blocks(int spp, std::uint32_t seed, SampleBlock<kLanes>& block, F&& f) {
+        const int width = of_.camera_.film.width, height = of_.camera_.film.height;
+        const std::int64_t count = std::int64_t{of_.view_.width} * spp;
+        for (std::int64_t first = 0; first < count; first += kLanes) {
+            const int used = static_cast<int>(std::min<std::int64_t>(kLanes, count - first));
+            for (int i = 0; i < kLanes; ++i) {
+                const std::int64_t sample = first + (i < used ? i : 0);
+                const int column = static_cast<int>(sample / spp), x = column - of_.margin_, y = row_ - of_.margin_;
+                const bool inside = x >= 0 && x < width && y >= 0 && y < height;
+                // Pixels of the picture have its random numbers; those beyond its border have others.
+                const int index = inside ? y * width + x : width * height + row_ * of_.view_.width + column;
+                block.column[i] = column;
+                block.row[i] = row_;
+                block.used[i] = i < used;
+                block.stream[i] = pixel_stream(index, seed);
+                block.sample[i] = static_cast<std::uint32_t>(sample % spp);
+            }
+            f(used);
+        }
+    }
+
+    /// Traces paths, or sets the irradiance of uniform light.
+    void trace(const SampleBlock<kLanes>& block, const CameraRays<kLanes>& rays, const Lanes<float, kLanes>& time,
+               PathResults<kLanes>& results) {
+        if (samples_.uniform) {
+            for (int i = 0; i < kLanes; ++i) results.irradiance.set(i, grey(rays.passed[i] ? rays.weight[i] : 0.0f));
+            return;
+        }
+        scene_.order = RayOrder::coherent;
+        trace_radiance(scene_view_, of_.view_, of_.settings_.path(), block, rays, time, scene_, results);
+    }
+
+    /// Sends lines from the centres of the pupil's boxes in random directions.
+    void find_edges(const SampleBlock<kLanes>& block, const PixelPoints<kLanes>& film, const LaneNumbers<kLanes>& u,
+                    const FilmSamples<kLanes>& samples, int first, int used, std::vector<Edge>& edges) {
+        constexpr double kEnd = 1.6;  // in half-widths of the box, beyond its corners
+        DirectionLine lines[kRays];
+        double areas[kRays];
+        float variable[kRays];
+        for (int i = 0; i < kRays; ++i) {
+            const int lane = std::min(first + i, used - 1);
+            variable[i] = samples.variable[lane];
+            lines[i] = line_of(film[lane], u[lane].x, areas[i]);
+        }
+        OutlinePoint points[OutlineRays::kMostPoints][kRays];
+        const WavelengthsInDouble wavelengths = of_.wavelengths(variable);
+        unexplained += of_.outline_.find(of_.path_, lines, kEnd, of_.if_dispersed(wavelengths), points);
+        for (const auto& lanes : points)
+            for (int i = 0; i < kRays && first + i < used; ++i) {
+                const OutlinePoint& point = lanes[i];
+                if (!(point.t > 0)) continue;
+                const int lane = first + i;
+                const Vec2f offset = film.u[lane];
+                const Vec2f pixel = {static_cast<float>(block.column[lane]) + offset.x,
+                                     static_cast<float>(block.row[lane]) + offset.y};
+                edges.push_back({lane, in_picture(pixel),
+                                 2 * std::numbers::pi * areas[i] * point.t * point.inverse_speed, variable[i],
+                                 samples.wavelengths.cell_position[lane], lines[i], point});
+            }
+        edge_count += std::min(used - first, kRays);
+    }
+
+    /// Returns the line from the centre of the pupil's box at a film point, and the area of the box's quarter.
+    DirectionLine line_of(Vec2f film, float u, double& area) const {
+        const CameraView& view = of_.view_;
+        return view.pupil_grid.nodes ? line_in(PupilLookup(view.pupil_grid, film.x, film.y), film, u, area)
+                                     : line_in(PupilLookup(view.pupil, film.x, film.y), film, u, area);
+    }
+    template <class Map>
+    static DirectionLine line_in(const PupilLookup<Map>& pupil, Vec2f film, float u, double& area) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(u);
+        const Vec2f centre = pupil.to_film(pupil.from_box({0, 0}));
+        const Vec2f step = pupil.to_film({pupil.box.half_width * static_cast<float>(std::cos(angle)),
+                                          pupil.box.half_height * static_cast<float>(std::sin(angle))});
+        area = static_cast<double>(pupil.box.half_width) * static_cast<double>(pupil.box.half_height);
+        const auto vector = [](Vec2f v) { return Vec2d{static_cast<double>(v.x), static_cast<double>(v.y)}; };
+        const bool lit = pupil.may_be_lit();
+        return {vector(film), vector(centre), lit ? vector(step) : Vec2d{0, 0}};
+    }
+
+    /// Traces the paths of `count` edges, and calls f for blocks of kRays.
+    template <class F>
+    void shade_edges(const SampleBlock<kLanes>& film_block, const std::vector<Edge>& edges, std::size_t first,
+                     std::size_t count, F&& f) {
+        SampleBlock<kLanes> block;
+        CameraRays<kLanes> rays;
+        PathResults<kLanes> results;
+        Lanes<float, kLanes> time;
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const Edge& edge = edges[first + std::min(i, count - 1)];
+            const int lane = edge.lane, at = static_cast<int>(i);
+            block.column[at] = film_block.column[lane], block.row[at] = film_block.row[lane];
+            block.stream[at] = film_block.stream[lane], block.sample[at] = film_block.sample[lane];
+            block.used[at] = i < count;
+            const Vec3d o = edge.point.origin;
+            const Vec3d from_vertex = {o.x, o.y, o.z + 1000 * static_cast<double>(of_.view_.front_vertex_m)};
+            set_camera_ray(
+                of_.view_, rays, at,
+                {static_cast<Vec3f>(from_vertex), static_cast<Vec3f>(normalized(edge.point.direction)), 1.0f},
+                i < count);
+            rays.sampled[at] = rays.passed[at] = i < count;
+        }
+        expose_rays(of_.view_, block, rays, time);
+        trace(block, rays, time, results);
+        for (std::size_t begin = 0; begin < count; begin += kRays) {
+            DirectionLine lines[kRays];
+            double t[kRays];
+            OutlineBlock outline;
+            outline.count = static_cast<int>(std::min<std::size_t>(kRays, count - begin));
+            for (int i = 0; i < kRays; ++i) {
+                const int lane = static_cast<int>(begin) + std::min(i, outline.count - 1);
+                const Edge& edge = edges[first + static_cast<std::size_t>(lane)];
+                lines[i] = edge.line, t[i] = edge.point.t, outline.points[i] = &edge.point;
+                const auto weight = static_cast<float>(edge.weight);
+                outline.lights[i] = {edge.pixel, weight * on_film(results.irradiance[lane], edge.cell_position), weight,
+                                     edge.variable};
+            }
+            outline.rays = of_.outline_.start(lines, t);
+            f(outline);
+        }
+    }
+
+    const PictureGradient& of_;
+    const GradientSamples& samples_;
+    int row_;
+    SceneView scene_view_;
+    PacketScene<SceneKind::any> scene_;
+};
+
+}  // namespace realcam
