@@ -15,6 +15,7 @@ from functools import cache
 from pathlib import Path
 
 from many_mutations import Target, main
+from text_mutations import mutated
 
 CONFIG = """ocio_profile_version: 2
 environment: {SHOT: a}
@@ -74,7 +75,7 @@ TABLES = {
     "a.cc": '<ColorCorrection id="c"><SOPNode><Slope>1 1 1</Slope><Offset>0 0 0</Offset><Power>1 1 1</Power></SOPNode>'
     "<SatNode><Saturation>1</Saturation></SatNode></ColorCorrection>\n",
 }  # fmt: skip
-NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+WORD = re.compile(r"\w+")
 EXTREMES = ["0", "-1", "1e38", "nan", "inf", "2", "4000000000", "1e-40", "65", "x", ""]
 
 
@@ -88,31 +89,10 @@ def case_of(cases: list[tuple[str, str, str]], seed: int, number: int) -> tuple[
     config, name, table = cases[number % len(cases)]
     for _ in range(draw.randint(1, 4)):
         if draw.random() < 0.5:
-            config = mutated(config, draw)
+            config = mutated(config, draw, WORD, EXTREMES)
         else:
-            table = mutated(table, draw)
+            table = mutated(table, draw, WORD, EXTREMES)
     return config, name, table
-
-
-def mutated(text: str, draw: random.Random) -> str:
-    lines = text.splitlines() or [""]
-    words = re.findall(r"\w+", text)
-    at = draw.randrange(len(lines))
-    match draw.randrange(6):
-        case 0 | 1:  # another number
-            numbers = list(NUMBER.finditer(text))
-            found = draw.choice(numbers) if numbers else None
-            return text if not found else text[: found.start()] + draw.choice(EXTREMES) + text[found.end() :]
-        case 2:  # another word
-            return text.replace(draw.choice(words), draw.choice(words), 1) if words else text
-        case 3:
-            del lines[at]
-        case 4:
-            lines.insert(at, draw.choice(lines))
-        case _:
-            start = draw.randrange(len(text) or 1)
-            return text[:start] + text[start + draw.randint(1, 20) :]
-    return "\n".join(lines)
 
 
 @cache

@@ -14,6 +14,7 @@ from functools import cache
 from pathlib import Path
 
 from many_mutations import Target, main
+from text_mutations import mutated
 
 HEADER = (
     '#usda 1.0\n(\n    metersPerUnit = 0.01\n    upAxis = "Z"\n    startTimeCode = 1\n    timeCodesPerSecond = 24\n)\n'
@@ -137,7 +138,7 @@ def Cylinder "Post" { token axis = "X"; double height = 3; }
 def "Copy" (prepend references = </Post>; instanceable = true) { }
 """
 
-NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+WORD = re.compile(r'"\w+"|[\w:]+')
 EXTREMES = ("0", "-1", "1e38", "-1e38", "1e-38", "2147483647", "-2147483648", "1e300", "nan", "inf", "0.5")
 
 
@@ -149,29 +150,8 @@ def case_of(stages: list[str], seed: int, number: int) -> str:
     draw = random.Random(seed * 2**40 + number)
     text = stages[number % len(stages)]
     for _ in range(draw.randint(1, 4)):
-        text = mutated(text, draw)
+        text = mutated(text, draw, WORD, EXTREMES) or "#"
     return text
-
-
-def mutated(text: str, draw: random.Random) -> str:
-    lines = text.splitlines()
-    words = re.findall(r'"\w+"|[\w:]+', text)
-    at = draw.randrange(len(lines))
-    match draw.randrange(6):
-        case 0 | 1:  # another number
-            numbers = list(NUMBER.finditer(text))
-            found = draw.choice(numbers) if numbers else None
-            return text if not found else text[: found.start()] + draw.choice(EXTREMES) + text[found.end() :]
-        case 2:  # another word
-            return text.replace(draw.choice(words), draw.choice(words), 1) if words else text
-        case 3:
-            del lines[at]
-        case 4:
-            lines.insert(at, draw.choice(lines))
-        case _:
-            start = draw.randrange(len(text))
-            return text[:start] + text[start + draw.randint(1, 20) :]
-    return "\n".join(lines) or "#"
 
 
 @cache

@@ -125,6 +125,21 @@ def wall() -> rc.Scene:
     return rc.Scene.from_arrays(corners, np.array([[0, 1, 2], [0, 2, 3]])).with_environment(1000)
 
 
+def ray_arrays(
+    meta: dict[str, Any], film: np.ndarray, side: np.ndarray, origin: np.ndarray, direction: np.ndarray, ok: np.ndarray
+) -> dict[str, Any]:
+    """Rays of 550 nm in the format ray-pairs/1."""
+    return {
+        "meta": {"format": "ray-pairs/1", **meta},
+        "wavelength_nm": np.full(len(film), 550.0),
+        "film_mm": film,
+        "film_side_mm": side,
+        "object_origin_mm": origin,
+        "object_direction": direction,
+        "ok": ok,
+    }
+
+
 def ideal_rays(count: int, focal_mm: float, film_mm: float, radius_mm: float) -> dict[str, Any]:
     """Rays of an ideal thin lens at z = 0: those of a film point meet in its image, by Newton's equation."""
     random = np.random.default_rng(1)
@@ -136,21 +151,12 @@ def ideal_rays(count: int, focal_mm: float, film_mm: float, radius_mm: float) ->
     origin = np.column_stack([at_lens, np.zeros(count)])
     direction = (image - origin) / np.linalg.norm(image - origin, axis=1)[:, None]
     meta = {
-        "format": "ray-pairs/1",
         "f_number": focal_mm / (2 * radius_mm),
         "film_size_mm": [16, 12],
         "film_plane_z_mm": film_mm,
         "film_side_reference_z_mm": 5.0,
     }
-    return {
-        "meta": meta,
-        "wavelength_nm": np.full(count, 550.0),
-        "film_mm": film,
-        "film_side_mm": side,
-        "object_origin_mm": origin,
-        "object_direction": direction,
-        "ok": np.hypot(*at_lens.T) < radius_mm,
-    }
+    return ray_arrays(meta, film, side, origin, direction, np.hypot(*at_lens.T) < radius_mm)
 
 
 def test_ideal_lens() -> None:
@@ -182,21 +188,12 @@ def fisheye_rays(count: int, focal_mm: float, radius_mm: float) -> dict[str, Any
     across = np.concatenate([cosine * radial, -sine], 1)
     origin = a * across + b * np.concatenate([tangential, 0 * cosine], 1) + [0, 0, 10]
     meta = {
-        "format": "ray-pairs/1",
         "f_number": 4.0,
         "film_size_mm": [20, 15],
         "film_plane_z_mm": 30 + focal_mm,
         "film_side_reference_z_mm": 30.0,
     }
-    return {
-        "meta": meta,
-        "wavelength_nm": np.full(count, 550.0),
-        "film_mm": film,
-        "film_side_mm": side,
-        "object_origin_mm": origin,
-        "object_direction": direction,
-        "ok": np.hypot(*side.T) < radius_mm,
-    }
+    return ray_arrays(meta, film, side, origin, direction, np.hypot(*side.T) < radius_mm)
 
 
 # The series of sin(theta) up to 100 degrees, of the powers that degree 11 has, is accurate to 1e-6.

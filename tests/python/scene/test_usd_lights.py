@@ -13,7 +13,7 @@ from .. import scenes
 
 pytest.importorskip("pxr")
 
-# Circles are polygons of 64 segments, which emit 0.04% less light. The rest of the tolerance is for noise.
+# Circles are polygons of 64 segments, whose area is 0.04% smaller; the rest of the tolerance covers noise.
 TOLERANCE = 1e-3
 
 FLOOR = """def Mesh "Floor" {

@@ -12,6 +12,7 @@
 #include "optics/lens/lens_changes.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"
+#include "variable_lens.hpp"
 
 namespace {
 
@@ -202,40 +203,6 @@ void check_lens(const LensSystem& lens, LightDirection way, const std::vector<Le
     }
 }
 
-std::vector<LensVariable> of_places(int surface) {
-    std::vector<LensVariable> list;
-    for (int axis = 0; axis < 3; ++axis) {
-        list.push_back({LensQuantity::tilt, surface, axis});
-        list.push_back({LensQuantity::decentre, surface, axis});
-    }
-    return list;
-}
-
-/// A sphere, an ellipsoid, an asphere, the stop in glass, a plane.
-LensSystem some_lens() {
-    LensSystem lens = lens_of({refracting(40, 4, Glass::constant(1.6), 14), refracting(-70, 3, Glass::air(), 14),
-                               refracting(30, 2, Glass::constant(1.7), 12), stop_plane(2, 10),
-                               refracting(-50, 4, Glass::constant(1.5), 12), refracting(0, 0, Glass::air(), 12)});
-    lens.surfaces[1].conic = 0.5;
-    lens.surfaces[2].conic = -0.3;
-    lens.surfaces[2].aspheric = {1e-5, -2e-8};
-    lens.wavelength_nm = 587.6;
-    return lens;
-}
-
-std::vector<LensVariable> all_of_some_lens() {
-    std::vector<LensVariable> list;
-    for (const int s : {0, 1, 2, 4, 5}) {
-        list.push_back({LensQuantity::curvature, s});
-        list.push_back({LensQuantity::aspheric, s, 4});
-        list.push_back({LensQuantity::aspheric, s, 10});
-        if (s != 5) list.push_back({LensQuantity::conic, s});
-        list.push_back({LensQuantity::index, s});
-    }
-    for (const int s : {0, 1, 2, 3, 4}) list.push_back({LensQuantity::thickness, s});
-    return list;
-}
-
 const std::vector<Start> kFromScene = {
     {{0, 0, -10}, {0, 0, 1}}, {{3, -2, -10}, {0.1, 0.2, 1}}, {{-5, 1, -3}, {0.2, 0, 1}}};
 const std::vector<Start> kFromFilm = {{{0, 0, 50}, {0, 0, -1}}, {{8, -6, 60}, {-0.15, 0.1, -1}}};
@@ -243,27 +210,27 @@ const std::vector<Start> kFromFilm = {{{0, 0, 50}, {0, 0, -1}}, {{8, -6, 60}, {-
 }  // namespace
 
 TEST_CASE("derivatives of rays through spheres, conics and aspheres, from either side") {
-    const LensSystem lens = some_lens();
-    check_lens(lens, LightDirection::to_film, all_of_some_lens(), kFromScene);
-    check_lens(lens, LightDirection::to_scene, all_of_some_lens(), kFromFilm);
+    const LensSystem lens = mixed_lens();
+    check_lens(lens, LightDirection::to_film, shape_variables(), kFromScene);
+    check_lens(lens, LightDirection::to_scene, shape_variables(), kFromFilm);
 }
 
 TEST_CASE("derivatives by tilts and decentres of a lens that is still centred") {
-    const LensSystem lens = some_lens();
-    std::vector<LensVariable> variables = all_of_some_lens();
+    const LensSystem lens = mixed_lens();
+    std::vector<LensVariable> variables = shape_variables();
     for (const int s : {0, 2, 3, 5})
-        for (const LensVariable& v : of_places(s)) variables.push_back(v);
+        for (const LensVariable& v : tilts_and_decentres(s)) variables.push_back(v);
     check_lens(lens, LightDirection::to_film, variables, kFromScene);
     check_lens(lens, LightDirection::to_scene, variables, kFromFilm);
 }
 
 TEST_CASE("derivatives of a lens with tilts, decentres and a mirror") {
-    LensSystem lens = some_lens();
+    LensSystem lens = mixed_lens();
     lens.surfaces[1].placement = {{0.3, -0.2, 0.1}, {3, -2, 10}, false};
     lens.surfaces[4].placement = {{0, 0.5, 0}, {0, 5, 0}, true};
-    std::vector<LensVariable> variables = all_of_some_lens();
+    std::vector<LensVariable> variables = shape_variables();
     for (const int s : {0, 1, 4, 5})
-        for (const LensVariable& v : of_places(s)) variables.push_back(v);
+        for (const LensVariable& v : tilts_and_decentres(s)) variables.push_back(v);
     check_lens(lens, LightDirection::to_film, variables, kFromScene);
     check_lens(lens, LightDirection::to_scene, variables, {{{0, 0, 50}, {0.02, 0.01, -1}}});
 
@@ -282,7 +249,7 @@ TEST_CASE("derivatives of a lens with tilts, decentres and a mirror") {
                                            {LensQuantity::thickness, 0}, {LensQuantity::curvature, 2},
                                            {LensQuantity::index, 2},     {LensQuantity::thickness, 2}};
     for (const int s : {1, 2})
-        for (const LensVariable& v : of_places(s)) of_folded.push_back(v);
+        for (const LensVariable& v : tilts_and_decentres(s)) of_folded.push_back(v);
     check_lens(folded, LightDirection::to_film, of_folded, {{{1, -2, -5}, {0.01, 0.02, 1}}});
 }
 
@@ -334,8 +301,8 @@ TEST_CASE("derivatives by the coefficients of every form") {
 }
 
 TEST_CASE("adjoints of many rays add up, whatever the threads, and rays that end are left out") {
-    const LensSystem lens = some_lens();
-    const std::vector<LensVariable> variables = all_of_some_lens();
+    const LensSystem lens = mixed_lens();
+    const std::vector<LensVariable> variables = shape_variables();
     const AdjointPath path(lens, LightDirection::to_film, 587.6, variables);
     constexpr std::size_t kRays = 1500;  // neither whole parts nor whole blocks
     std::vector<double> origins, directions, of(3 * kRays), of_paths(kRays, 0.5), by(3 * kRays), along(3 * kRays);
@@ -369,7 +336,7 @@ TEST_CASE("adjoints of many rays add up, whatever the threads, and rays that end
 }
 
 TEST_CASE("variables that make no sense are refused with one line") {
-    const LensSystem lens = some_lens();
+    const LensSystem lens = mixed_lens();
     const auto refused = [&](const LensVariable& v, const std::string& why) {
         CHECK(message_of([&] { check_variables(lens, {v}); }).find(why) != std::string::npos);
     };

@@ -12,6 +12,7 @@
 #include "optics/trace/film_frame.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"
+#include "variable_lens.hpp"
 
 namespace {
 
@@ -205,39 +206,18 @@ void check_rim(const LensSystem& lens, const std::vector<LensVariable>& variable
     }
 }
 
-std::vector<LensVariable> of_places(int surface) {
-    std::vector<LensVariable> list;
-    for (int axis = 0; axis < 3; ++axis) {
-        list.push_back({LensQuantity::tilt, surface, axis});
-        list.push_back({LensQuantity::decentre, surface, axis});
-    }
-    return list;
-}
-
-/// A sphere, an ellipsoid, an asphere, the stop in glass, a plane.
-LensSystem some_lens() {
-    LensSystem lens = lens_of({refracting(40, 4, Glass::constant(1.6), 14), refracting(-70, 3, Glass::air(), 14),
-                               refracting(30, 2, Glass::constant(1.7), 12), stop_plane(2, 10),
-                               refracting(-50, 4, Glass::constant(1.5), 12), refracting(0, 0, Glass::air(), 12)});
-    lens.surfaces[1].conic = 0.5;
-    lens.surfaces[2].conic = -0.3;
-    lens.surfaces[2].aspheric = {1e-5, -2e-8};
-    lens.wavelength_nm = 587.6;
+/// mixed_lens() with a film.
+LensSystem lens_with_film() {
+    LensSystem lens = mixed_lens();
     lens.film_distance = 25;
     return lens;
 }
 
-std::vector<LensVariable> all_of_some_lens() {
-    std::vector<LensVariable> list;
-    for (const int s : {0, 1, 2, 4, 5}) {
-        list.push_back({LensQuantity::curvature, s});
-        list.push_back({LensQuantity::aspheric, s, 4});
-        list.push_back({LensQuantity::aspheric, s, 10});
-        if (s != 5) list.push_back({LensQuantity::conic, s});
-        list.push_back({LensQuantity::index, s});
-        for (const LensVariable& v : of_places(s)) list.push_back(v);
-    }
-    for (const int s : {0, 1, 2, 3, 4}) list.push_back({LensQuantity::thickness, s});
+/// All variables of lens_with_film().
+std::vector<LensVariable> all_variables() {
+    std::vector<LensVariable> list = shape_variables();
+    for (const int s : {0, 1, 2, 4, 5})
+        for (const LensVariable& v : tilts_and_decentres(s)) list.push_back(v);
     list.push_back({LensQuantity::film_distance});
     return list;
 }
@@ -247,15 +227,15 @@ const std::vector<FilmRay> kFilmRays = {{0, 0, 0.05, 0.02}, {5, -3, -0.2, 0.15},
 }  // namespace
 
 TEST_CASE("film points of fixed scene rays move by Hamiltonians: spheres, conics, aspheres") {
-    for (const FilmRay& ray : kFilmRays) check_film_points(some_lens(), all_of_some_lens(), ray);
+    for (const FilmRay& ray : kFilmRays) check_film_points(lens_with_film(), all_variables(), ray);
 }
 
 TEST_CASE("film points of fixed scene rays through tilted and decentred surfaces and film") {
-    LensSystem lens = some_lens();
+    LensSystem lens = lens_with_film();
     lens.surfaces[1].placement = {{0.3, -0.2, 0.1}, {3, -2, 10}, false};
     lens.surfaces[4].placement = {{0, 0.5, 0}, {0, 5, 0}, true};
     lens.film_placement = {{0.2, 0.1, 0}, {2, -1, 0}, false};
-    for (const FilmRay& ray : kFilmRays) check_film_points(lens, all_of_some_lens(), ray);
+    for (const FilmRay& ray : kFilmRays) check_film_points(lens, all_variables(), ray);
 }
 
 TEST_CASE("film points of fixed scene rays through a dispersing lens, at three wavelengths") {
@@ -285,7 +265,7 @@ TEST_CASE("film points of fixed scene rays through freeforms, by their terms") {
                                               {LensQuantity::thickness, 0},
                                               {LensQuantity::aspheric, 0, 4}};
     const auto check = [&](const SurfaceForm& form, std::vector<LensVariable> variables) {
-        LensSystem lens = some_lens();
+        LensSystem lens = lens_with_film();
         lens.surfaces[0].form = form;
         variables.insert(variables.end(), shared.begin(), shared.end());
         check_film_points(lens, variables, {2, 1, -0.1, 0.12});
@@ -296,12 +276,12 @@ TEST_CASE("film points of fixed scene rays through freeforms, by their terms") {
 }
 
 TEST_CASE("rims move at fixed scene rays: the stop, and rims of curved and of tilted surfaces") {
-    LensSystem tilted = some_lens();
+    LensSystem tilted = lens_with_film();
     tilted.surfaces[1].placement = {{0.3, -0.2, 0.1}, {3, -2, 10}, false};
     std::vector<LensVariable> variables;
-    for (const LensVariable& v : all_of_some_lens())
+    for (const LensVariable& v : all_variables())
         if (v.quantity != LensQuantity::aspheric && v.quantity != LensQuantity::conic) variables.push_back(v);
-    for (const LensSystem& lens : {some_lens(), tilted})
+    for (const LensSystem& lens : {lens_with_film(), tilted})
         for (const int surface : {0, 1, 3, 4, 5})
             for (const FilmRay& ray : kFilmRays) {
                 CAPTURE(surface);
@@ -310,7 +290,7 @@ TEST_CASE("rims move at fixed scene rays: the stop, and rims of curved and of ti
 }
 
 TEST_CASE("derivatives of pictures on a curved film are refused") {
-    LensSystem lens = some_lens();
+    LensSystem lens = lens_with_film();
     lens.name = "bent";
     lens.film_radius_of_curvature = -50;
     CHECK(message_of([&] { TangentPath(lens, 587.6, {}); }).find("of lens \"bent\" is curved") != std::string::npos);
