@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from ..files import check_target, record_input
 from ..json_values import json_text
 from . import lens_options, options
 from .grouped_options import grouped
@@ -43,11 +44,10 @@ def fit(
     quiet: options.Quiet = False,
 ) -> None:
     """Fit a lens to rays before and behind it, and print its errors on rays to which nothing was fitted."""
-    from .._core import InputError
     from ..ray_pairs import RayPairLens
 
-    if output.resolve() == rays.resolve():
-        raise InputError(f"{output}: is the file of the rays; choose another")
+    record_input(rays)
+    check_target(output)  # before the fit, which takes seconds
     lens = RayPairLens.fit(rays)
     lens.save(output)
     report = lens.fit_report

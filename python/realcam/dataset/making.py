@@ -87,8 +87,8 @@ class _Work:
 
     def run(self, threads: int) -> None:
         """Makes the pictures in this process."""
-        for number in self.missing:
-            self._report()
+        for done, number in enumerate(self.missing):
+            self._report(len(self.missing) - done)
             if message := _make_one(self._target.recipe, str(self._target.path), number, self._device, threads):
                 raise InputError(message)
 
@@ -99,16 +99,18 @@ class _Work:
         def submit(number: int) -> concurrent.futures.Future[Outcome]:
             return executor.submit(_make_one, recipe, folder, number, self._device, threads)
 
+        def report() -> None:
+            self._report(len(self._target.not_done(self.missing)))
+
         location = str(self._target.path)
-        do_all(self._unfinished, submit, window=_WINDOW, report=self._report, location=location, noun="picture")
+        do_all(self._unfinished, submit, window=_WINDOW, report=report, location=location, noun="picture")
 
     def _unfinished(self) -> list[int] | None:
         self.missing = self._target.not_done(self.missing)
         return self.missing or None
 
-    def _report(self) -> None:
-        """Reports the fraction done. Raises InputError if the caller stops the work."""
-        left = len(self._target.not_done(self.missing))
+    def _report(self, left: int) -> None:
+        """Reports the fraction done. left: missing pictures. Raises InputError if the caller stops the work."""
         if self._progress is not None and self._progress(1 - left / self._count) is False:
             raise InputError(f"{self._target.path}: stopped; start again to go on")
 

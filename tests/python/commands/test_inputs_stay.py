@@ -30,6 +30,7 @@ WRITERS = {
     "convert": ("calibration", "convert", "camera.yml", "--to", "opencv"),
     "of a map": ("calibration", "convert", "stmap.exr", "--to", "stmap"),
     "calibrated": ("render", "calibrated.toml", "--lens", "wide-24mm", "--resolution", "8x4", "--device", "cpu", "-o"),
+    "fit": ("lens", "fit", "rays.npz", "-o"),
     "undistort": ("calibration", "undistort", "camera.yml", "sky.png", "-o"),
 }
 CAMERA = """%YAML:1.0
@@ -61,6 +62,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     subprocess.run([*PYTHON, *made], cwd=folder, check=True)
     (folder / "calibrated.toml").write_text(f'{SHOT}[calibration]\nfile = "camera.yml"\nvignetting = "flat.png"\n')
     shutil.copy(folder / "sky.png", folder / "flat.png")
+    (folder / "rays.npz").write_bytes(b"refused before it is read")
     return folder
 
 
@@ -68,7 +70,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ("writer", "target"),
     [(w, t) for w in ("sbatch", "openjd") for t in ("shot.toml", "./quad.obj", "quad.mtl", "link")]
     + [(w, t) for w in ("compare", "render", "undistort") for t in ("sky.png", "link.png")]
-    + [("convert", "camera.yml"), ("of a map", "stmap.exr"), ("calibrated", "flat.png")],
+    + [("convert", "camera.yml"), ("of a map", "stmap.exr"), ("calibrated", "flat.png"), ("fit", "rays.npz")],
 )
 def test_inputs_stay(inputs: Path, tmp_path: Path, writer: str, target: str) -> None:
     folder = tmp_path / "work"

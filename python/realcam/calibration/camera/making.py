@@ -46,7 +46,7 @@ def calibrated_camera(
         if error_px <= PRECISION_PX:
             break
     if error_px > LARGEST_ERROR_PX:
-        mask = precise_mask(calibration, COLUMNS[-1], LARGEST_ERROR_PX)
+        mask = precise_mask(calibration, mask, COLUMNS[-1], LARGEST_ERROR_PX)
         camera = camera.replace(geometry=sampled_geometry(calibration, film, COLUMNS[-1], mask, gain))
     return camera if scene_from_camera is None else posed(camera, scene_from_camera)
 

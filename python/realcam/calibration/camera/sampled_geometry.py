@@ -70,8 +70,10 @@ def defined_mask(calibration: CalibratedPicture) -> np.ndarray | None:
     return None if defined.all() else defined
 
 
-def precise_mask(calibration: CalibratedPicture, columns: int, largest_px: float) -> np.ndarray:
-    """Returns defined_mask without the cells about which the grid with this number of columns is off by more pixels.
+def precise_mask(
+    calibration: CalibratedPicture, mask: np.ndarray | None, columns: int, largest_px: float
+) -> np.ndarray:
+    """Returns a defined_mask without the cells about which the grid with this number of columns is off by more pixels.
 
     At a fold, where the angle per pixel has no limit, no grid is fine enough.
     """
@@ -87,8 +89,9 @@ def precise_mask(calibration: CalibratedPicture, columns: int, largest_px: float
     pixels, _ = calibration.project((seen * (1, -1, -1)).reshape(-1, 3))
     with np.errstate(invalid="ignore"):
         is_precise = np.linalg.norm(pixels - centres.reshape(-1, 2), axis=1) <= largest_px
-    _, status = calibration.ray(centres.reshape(-1, 2))
-    defined = (is_precise & (status == PointStatus.OK)).reshape(centres.shape[:2])
+    defined = is_precise.reshape(centres.shape[:2])
+    if mask is not None:
+        defined &= mask
     # The error varies within a cell of the grid, which may be larger than those of the mask.
     across = -(-centres.shape[1] // columns) + 1
     precise: np.ndarray = binary_erosion(defined, iterations=across, border_value=True)
