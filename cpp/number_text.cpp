@@ -3,24 +3,15 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 namespace realcam {
 namespace {
 
-/// Notation of printf: %g, %e or %f.
-enum class Notation { general, exponent, fixed };
-
-/// Formats a number with printf. `digits`: its precision argument.
-std::string printed(Notation notation, int digits, double value) {
+/// Formats a number as printf does with a precision of `digits`, but with a point in every locale.
+std::string printed(std::chars_format notation, int digits, double value) {
     char text[64];
-    switch (notation) {
-        case Notation::general: std::snprintf(text, sizeof text, "%.*g", digits, value); break;
-        case Notation::exponent: std::snprintf(text, sizeof text, "%.*e", digits, value); break;
-        case Notation::fixed: std::snprintf(text, sizeof text, "%.*f", digits, value); break;
-    }
-    return text;
+    const auto [end, error] = std::to_chars(text, text + sizeof text, value, notation, digits);
+    return std::string(text, end);
 }
 
 }  // namespace
@@ -29,11 +20,11 @@ std::string number_text(double value, int digits) {
     if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
     const double magnitude = std::fabs(value);
     if (std::isnan(value) || (0 < magnitude && magnitude < 1e-6) || magnitude >= 1e15)
-        return printed(Notation::general, digits, value);
+        return printed(std::chars_format::general, digits, value);
     // The exponent is that of the rounded number: 999.96 has three digits before the point, but is shown as 1000.
     const double shown = rounded(magnitude, digits);
     const int exponent = shown > 0 ? static_cast<int>(std::floor(std::log10(shown))) : 0;
-    std::string text = printed(Notation::fixed, std::max(0, digits - 1 - exponent), magnitude);
+    std::string text = printed(std::chars_format::fixed, std::max(0, digits - 1 - exponent), magnitude);
     if (text.find('.') != std::string::npos) {
         text.erase(text.find_last_not_of('0') + 1);
         if (text.back() == '.') text.pop_back();
@@ -46,7 +37,8 @@ std::string number_text(double value, int digits) {
 }
 
 double rounded(double value, int digits) {
-    return std::strtod(printed(Notation::exponent, digits - 1, value).c_str(), nullptr);
+    if (!std::isfinite(value)) return value;
+    return number_in(printed(std::chars_format::scientific, digits - 1, value));
 }
 
 std::string counted(double count, const std::string& noun, int digits) {

@@ -28,6 +28,7 @@ io::HelpPage page_of(const CLI::App& command) {
     }
     const HelpRow help = row_of(*command.get_help_ptr());
     for (const std::string& group : command.get_groups()) {
+        if (group.empty()) continue;  // of hidden options
         io::HelpPage::Section section{group, {}};
         for (const CLI::Option* option : command.get_options())
             if (option->nonpositional() && option->get_group() == group && option != command.get_help_ptr())

@@ -80,7 +80,8 @@ Assembly read_ply_scene(const std::string& path, const SceneFileOptions& options
 }
 
 /// Returns the cameras of a file's nodes. A camera has the name of its node, or its own name if the node has none.
-std::vector<SceneCamera> cameras_of(const FileScene& file, SceneObjects& objects, std::vector<std::string>& warnings) {
+/// Warnings go to `static_geometry`.
+std::vector<SceneCamera> cameras_of(const FileScene& file, SceneObjects& objects, Scene& static_geometry) {
     std::vector<SceneCamera> cameras;
     if (file.cameras.empty()) return cameras;
     DistinctNames names;
@@ -88,11 +89,11 @@ std::vector<SceneCamera> cameras_of(const FileScene& file, SceneObjects& objects
     for (std::uint32_t i = 0; i < file.nodes.size(); ++i) {
         if (file.nodes[i].camera < 0) continue;
         const FileCamera& camera = file.cameras[static_cast<std::size_t>(file.nodes[i].camera)];
-        const AnimatedTransform transform = objects.placement(i, transforms[i]);
+        const AnimatedTransform transform = objects.placement(i, transforms[i], static_geometry);
         std::string name = !file.nodes[i].name.empty() ? file.nodes[i].name : camera.name;
         if (name.empty()) name = "camera " + std::to_string(file.nodes[i].camera);
         if (const std::string why = transform_error(transform.scene_from_object); !why.empty()) {
-            warnings.push_back(file.path + ": camera " + in_quotes(name) + " is left out: " + why);
+            static_geometry.warnings.push_back(file.path + ": camera " + in_quotes(name) + " is left out: " + why);
             continue;
         }
         cameras.push_back({names.take(name), transform.scene_from_object, camera.vertical_field_rad, transform.motion});
@@ -122,7 +123,7 @@ Assembly assemble(const FileScene& file, const SceneFileOptions& options, const 
     });
     read_geometry(static_geometry, whole_scene, part_left_out);
     read_lights(static_geometry, whole_scene, part_left_out);
-    std::vector<SceneCamera> cameras = cameras_of(file, objects, static_geometry.warnings);
+    std::vector<SceneCamera> cameras = cameras_of(file, objects, static_geometry);
     std::vector<Instance> instances = objects.finish(materials);
     if (instances.empty())
         keep_all_materials(static_geometry, std::move(materials));

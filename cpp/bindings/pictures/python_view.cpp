@@ -40,7 +40,7 @@ std::shared_ptr<py::object> shared(py::object object) {
             }};
 }
 
-/// View of a realcam.OcioView.
+/// View whose work is done by a realcam.OcioView.
 class PythonView final : public View {
 public:
     explicit PythonView(py::object view) : view_(shared(std::move(view))) {}
@@ -72,7 +72,7 @@ private:
     std::shared_ptr<py::object> view_;
 };
 
-/// Configuration that is a realcam.ocio_config.OcioConfig.
+/// Configuration whose work is done by a realcam.ocio_config.OcioConfig.
 class PythonConfig final : public shot::OcioConfig {
 public:
     /// Requires the GIL.
@@ -109,6 +109,8 @@ private:
 
 std::shared_ptr<const View> view_from(const py::object& tone) {
     if (py::isinstance<py::str>(tone)) return std::make_shared<ToneView>(tone_curve_from(tone.cast<std::string>()));
+    if (!py::isinstance(tone, py::module_::import("realcam.ocio").attr("OcioView")))
+        throw InputError("a tone must be the name of a tone curve or an OcioView");
     return std::make_shared<PythonView>(tone);
 }
 

@@ -50,6 +50,8 @@ public:
         warn(out_of_range_, "numbers of its materials are out of their range; the nearest number in the range is used");
         warn(bad_samplers_, "wrap modes or filters of samplers are invalid; REPEAT and LINEAR are used");
         warn(bad_transforms_, "texture transforms are not finite; they are left out");
+        if (has_bad_attenuation_)
+            scene_.warnings.push_back("an attenuationDistance must be positive; volumes without one absorb no light");
         if (!bad_alpha_mode_.empty())
             scene_.warnings.push_back("an alphaMode must be OPAQUE, MASK or BLEND, not " + bad_alpha_mode_ +
                                       "; OPAQUE is used");
@@ -108,7 +110,7 @@ private:
         const Json& distance = json["attenuationDistance"];
         // Some programs write 0 for no attenuation; taken literally, no light would pass.
         const bool is_positive = distance.number(1) > 0;
-        if (!is_positive) ++out_of_range_;
+        has_bad_attenuation_ |= !is_positive;
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
         if (is_positive) read(out.attenuation_distance, distance, {std::numeric_limits<float>::min(), kInfinity});
     }
@@ -242,7 +244,7 @@ private:
     std::map<double, std::int32_t> first_of_view_;  // first image of each bufferView
     std::size_t out_of_range_ = 0, bad_transforms_ = 0, bad_samplers_ = 0;
     std::string bad_alpha_mode_;  // the first invalid one, in quotes
-    bool has_occlusion_ = false, has_third_set_ = false;
+    bool has_occlusion_ = false, has_third_set_ = false, has_bad_attenuation_ = false;
 };
 
 }  // namespace

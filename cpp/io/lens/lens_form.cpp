@@ -14,7 +14,9 @@ namespace {
 
 /// Parses a key of the table "radial_terms": a power of r from 1 to `max_power`.
 int power_of(const TomlTable& table, std::string_view key, const toml::node& node, int max_power) {
-    const bool digits = !key.empty() && key.size() < 3 && key.find_first_not_of("0123456789") == key.npos;
+    // A leading zero would let two keys name the same power.
+    const bool digits =
+        !key.empty() && key.size() < 3 && key.front() != '0' && key.find_first_not_of("0123456789") == key.npos;
     const int power = digits ? std::stoi(std::string(key)) : 0;
     if (power < 1 || power > max_power)
         table.fail("radial terms have powers from 1 to " + std::to_string(max_power) + " as keys; this one is \"" +
@@ -196,7 +198,8 @@ ApertureShape read_aperture(const TomlTable& surface, double rim) {
     }
     if (const toml::node* list = surface.find("obscurations")) {
         const toml::array* array = list->as_array();
-        if (!array || !array->is_homogeneous(toml::node_type::table))
+        // An empty array is not homogeneous for toml++.
+        if (!array || !(array->empty() || array->is_homogeneous(toml::node_type::table)))
             surface.fail("\"obscurations\" must be an array of tables", list);
         for (const toml::node& item : *array)
             read_obscuration(surface.within(*item.as_table()), rim, shape.obscurations);

@@ -90,6 +90,8 @@ void SceneObjects::add_node(std::uint32_t node, const Affine<double>& transform,
     const auto scene = read_object(node, transform, parts, static_geometry);
     if (!scene->triangles.empty() || !scene->points.empty())
         add_scene(scene, node, transform, part_of, static_geometry);
+    else
+        move_warnings(*scene, static_geometry);
     const std::ptrdiff_t parent = std::ssize(instances_) > next_instance ? next_instance : part_of;
     visit_nodes({file_, scale_, node, file_.nodes[node].end, transform, checkpoint_},
                 [&](std::uint32_t part, const Affine<double>& part_transform) {
@@ -115,7 +117,7 @@ void SceneObjects::add_deforming(std::uint32_t node, const Affine<double>& trans
 void SceneObjects::add_scene(const std::shared_ptr<Scene>& scene, std::uint32_t node, const Affine<double>& transform,
                              std::ptrdiff_t part_of, Scene& static_geometry) {
     move_warnings(*scene, static_geometry);
-    const AnimatedTransform animated = placement(node, transform);
+    const AnimatedTransform animated = placement(node, transform, static_geometry);
     if (animated.motion == nullptr && (file_.nodes[node].motion >= 0 || deforms(node)) &&
         !transform_error(animated.scene_from_object).empty()) {
         static_geometry.warnings.push_back(file_.path + ": node " + in_quotes(file_.nodes[node].name) +
@@ -144,7 +146,7 @@ Affine<double> SceneObjects::transform_at(std::uint32_t node, double time) {
     return map;
 }
 
-AnimatedTransform SceneObjects::placement(std::uint32_t node, const Affine<double>& transform) {
+AnimatedTransform SceneObjects::placement(std::uint32_t node, const Affine<double>& transform, Scene& static_geometry) {
     std::vector<double> times;
     for (std::uint32_t i = node; i != kNoParent; i = file_.nodes[i].parent) {
         if (file_.nodes[i].motion < 0) continue;
@@ -162,8 +164,13 @@ AnimatedTransform SceneObjects::placement(std::uint32_t node, const Affine<doubl
         keys.times_s.push_back(time);
         keys.transforms.push_back(transform_at(node, time));
     }
-    // If a key scales the node to zero, it is static at its transform at time 0, or left out.
-    if (!motion_error(keys).empty()) return transform_at(node, 0);
+    if (!motion_error(keys).empty()) {
+        const Affine<double> first = transform_at(node, 0);
+        if (transform_error(first).empty())
+            static_geometry.warnings.push_back(file_.path + ": node " + in_quotes(file_.nodes[node].name) +
+                                               " is scaled to zero while it moves, and stays as it is at time 0");
+        return first;
+    }
     return sampled_motion(times, [&](double time) { return transform_at(node, time); });
 }
 
@@ -177,7 +184,7 @@ std::shared_ptr<Scene> SceneObjects::read_object(std::uint32_t node, const Affin
         read_geometry(*scene, part, leaves_out);
     else if (scene->points.empty() && names_.contains(file_.nodes[node].name))
         throw SceneFileError(file_.path + ": node " + in_quotes(file_.nodes[node].name) +
-                             " holds neither triangles nor a light");
+                             " holds neither triangles nor a light that has a position");
     // A directional light has no position: it illuminates the whole scene, in its direction in the scene.
     Scene in_scene_frame;
     read_lights(in_scene_frame, {file_, scale_, node, end, transform, checkpoint_}, leaves_out);
@@ -237,12 +244,12 @@ void keep_used_materials(Scene& scene, const Scene& from) {
     for (Material& material : used) {
         drop_textures_without_uvs(material, scene);
         for (const auto member : kMaterialTextures) {
-            std::int32_t& node_index = (material.*member).texture;
-            if (node_index < 0) continue;
+            std::int32_t& texture_index = (material.*member).texture;
+            if (texture_index < 0) continue;
             const auto [texture, is_new] =
-                textures.try_emplace(node_index, static_cast<std::int32_t>(scene.textures.size()));
-            if (is_new) scene.textures.push_back(from.textures[static_cast<std::size_t>(node_index)]);
-            node_index = texture->second;
+                textures.try_emplace(texture_index, static_cast<std::int32_t>(scene.textures.size()));
+            if (is_new) scene.textures.push_back(from.textures[static_cast<std::size_t>(texture_index)]);
+            texture_index = texture->second;
         }
     }
     scene.materials = std::move(used);

@@ -24,11 +24,12 @@ public:
     LeftOut left_out(std::uint32_t node, const Affine<double>& transform) const;
 
     /// Adds the instance of a node for which left_out() is not `nothing`. Warnings and suns go to `static_geometry`.
-    /// Throws SceneFileError for a named node without triangles and lights.
+    /// Throws SceneFileError for a named node without triangles and without lights that have a position.
     void add(std::uint32_t node, const Affine<double>& transform, Scene& static_geometry);
 
     /// Returns the transform of a node, possibly animated, in metres. `transform`: its static transform to the scene.
-    AnimatedTransform placement(std::uint32_t node, const Affine<double>& transform);
+    /// A node that an animation scales to zero has its transform at time 0, with a warning in `static_geometry`.
+    AnimatedTransform placement(std::uint32_t node, const Affine<double>& transform, Scene& static_geometry);
 
     /// Returns the instances, with the materials and textures that they use. `materials`: scene with all materials and
     /// textures of the file. Must be called last, once.
@@ -47,7 +48,7 @@ private:
     /// Adds the instance of a node whose object is `scene`, or a warning if it is scaled to zero while it moves.
     void add_scene(const std::shared_ptr<Scene>& scene, std::uint32_t node, const Affine<double>& transform,
                    std::ptrdiff_t part_of, Scene& static_geometry);
-    /// Reads a node with those of its descendants that `leaves_out` includes, in the node's frame. Suns go to
+    /// Reads a node with those of its descendants that `leaves_out` does not exclude, in the node's frame. Suns go to
     /// `static_geometry`.
     std::shared_ptr<Scene> read_object(std::uint32_t node, const Affine<double>& transform,
                                        const LeftOutFunction& leaves_out, Scene& static_geometry) const;

@@ -42,8 +42,8 @@ REALCAM_INLINE std::int32_t pixel_at(const CameraView& camera, float x, float y)
     return inside ? static_cast<std::int32_t>(row) * camera.width + static_cast<std::int32_t>(column) : -1;
 }
 
-/// Returns the time from the beginning of the first row's exposure to the end of the last row's (rolling shutter), in
-/// the unit of CameraView::exposed_time. Samples from lights are distributed uniformly over it.
+/// Returns the time from the beginning of the first row's exposure to a time after which no row counts samples (see
+/// exposure_weight), in the unit of CameraView::exposed_time. Samples from lights are distributed uniformly over it.
 REALCAM_INLINE float all_times(const CameraView& camera) {
     return camera.exposed_time + camera.row_time * static_cast<float>(camera.height);
 }

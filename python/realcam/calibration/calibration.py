@@ -50,7 +50,7 @@ class Calibration(StatedCamera):
         camera, for lensfun. camera_matrix: (3, 3) K of the undistorted picture, for ST maps and tables of cv2.remap
         that do not state it. Raises CalibrationFileError, InputError.
         """
-        K = None if camera_matrix is None else _matrix(camera_matrix)
+        K = None if camera_matrix is None else _camera_matrix(camera_matrix, "camera_matrix")
         return _calibration(load(path, camera, format, size=size, crop_factor=crop_factor, camera_matrix=K))
 
     @staticmethod
@@ -92,7 +92,7 @@ class Calibration(StatedCamera):
         D: 0, 4, 5, 8, 12 or 14 coefficients in OpenCV's order. Raises InputError.
         """
         coefficients = _coefficients(D)
-        model = opencv_models.pinhole_model(shift(ORIGIN, ORIGIN) @ _matrix(K), coefficients)
+        model = opencv_models.pinhole_model(shift(ORIGIN, ORIGIN) @ _camera_matrix(K, "K"), coefficients)
         return Calibration(model, size, f"opencv{len(coefficients)}", pixel_origin=0.0)
 
     @staticmethod
@@ -101,13 +101,13 @@ class Calibration(StatedCamera):
         coefficients = _coefficients(D)
         if len(coefficients) != 4:
             raise InputError(f"the fisheye model has 4 coefficients, not {len(coefficients)}")
-        model = opencv_models.fisheye_model(shift(ORIGIN, ORIGIN) @ _matrix(K), coefficients)
+        model = opencv_models.fisheye_model(shift(ORIGIN, ORIGIN) @ _camera_matrix(K, "K"), coefficients)
         return Calibration(model, size, "opencv_fisheye", pixel_origin=0.0)
 
     @staticmethod
     def pinhole(camera_matrix: ArrayLike, size: tuple[int, int]) -> Calibration:
         """Returns a pinhole camera with K in realcam's pixel coordinates."""
-        return Calibration(opencv_models.pinhole_model(_matrix(camera_matrix)), size, "pinhole")
+        return Calibration(opencv_models.pinhole_model(_camera_matrix(camera_matrix, "camera_matrix")), size, "pinhole")
 
     def __repr__(self) -> str:
         name = f" {self.name!r:.60}" if self.name else ""
@@ -175,9 +175,9 @@ class Calibration(StatedCamera):
         this camera's. rotation: (3, 3), from this camera's axes to the pinhole camera's. interpolation: "bilinear" or
         "bicubic". Raises InputError.
         """
-        matrix = self.camera_matrix if camera_matrix is None else _matrix(camera_matrix)
+        matrix = self.camera_matrix if camera_matrix is None else _camera_matrix(camera_matrix, "camera_matrix")
         target = picture_size(self.size if size is None else size)
-        turn = None if rotation is None else _matrix(rotation, "rotation")
+        turn = None if rotation is None else rectification.rotation_of(rows_of(rotation, 3, "rotation"), "rotation")
         values = resampling.checked_image(image, self.size)
         return resampling.remapped(values, maps.undistorting_map(self, matrix, target, turn), interpolation)
 
@@ -189,7 +189,7 @@ class Calibration(StatedCamera):
         image: (H, W) or (H, W, C), of any size. camera_matrix: of the pinhole camera; default: this camera's. Pixels
         beside the pinhole camera's picture are NaN. Raises InputError.
         """
-        matrix = self.camera_matrix if camera_matrix is None else _matrix(camera_matrix)
+        matrix = self.camera_matrix if camera_matrix is None else _camera_matrix(camera_matrix, "camera_matrix")
         values = resampling.checked_image(image)
         return resampling.remapped(values, maps.redistorting_map(self, matrix), interpolation)
 
@@ -242,12 +242,12 @@ def _calibration(stated: StatedCamera) -> Calibration:
     return Calibration(**{entry.name: getattr(stated, entry.name) for entry in fields(stated)})
 
 
-def _matrix(values: ArrayLike, name: str = "K") -> Array:
+def _camera_matrix(values: ArrayLike, name: str) -> Array:
     matrix = rows_of(values, 3, name)
     if matrix.shape != (3, 3) or not np.isfinite(matrix).all() or not np.linalg.det(matrix):
         raise InputError(f"{name} must be an invertible matrix of (3, 3) finite numbers")
-    if name == "K" and (tuple(matrix[2]) != (0, 0, 1)):
-        raise InputError("the last row of K must be (0, 0, 1)")
+    if tuple(matrix[2]) != (0, 0, 1):
+        raise InputError(f"the last row of {name} must be (0, 0, 1)")
     return matrix
 
 

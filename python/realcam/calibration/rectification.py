@@ -37,16 +37,26 @@ def rectified(K1: Array, K2: Array, size: tuple[int, int], T: Array) -> StereoRe
     return StereoRectification(align @ half.T, P1, align @ half, P2)
 
 
+def rotation_of(matrix: Array, name: str) -> Array:
+    """Returns the rotation (3, 3) next to a matrix that is one within the precision of printed digits.
+
+    name: in the InputError for any other matrix.
+    """
+    if matrix.shape != (3, 3) or not np.isfinite(matrix).all():
+        raise InputError(f"{name} must be a matrix of (3, 3) finite numbers")
+    if np.abs(matrix @ matrix.T - np.eye(3)).max() > 1e-3 or np.linalg.det(matrix) < 0:
+        raise InputError(f"{name} must be a rotation: orthonormal, with determinant 1")
+    u, _, v = np.linalg.svd(matrix)
+    return u @ v
+
+
 def _rigid(T: Array) -> tuple[Array, Array]:
     if T.shape != (4, 4) or not np.isfinite(T).all():
         raise InputError("T must be a matrix of (4, 4) finite numbers")
-    rotation, translation = T[:3, :3], T[:3, 3]
-    if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-3 or np.linalg.det(rotation) < 0:
-        raise InputError("T must hold a rotation: orthonormal, with determinant 1")
+    translation = T[:3, 3]
     if not np.linalg.norm(translation):
         raise InputError("the cameras of a stereo pair must be apart; T has no translation")
-    u, _, v = np.linalg.svd(rotation)
-    return u @ v, translation
+    return rotation_of(T[:3, :3], "the upper left part of T"), translation
 
 
 def _half_turn(rotation: Array) -> Array:

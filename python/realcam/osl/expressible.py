@@ -26,9 +26,7 @@ def check_expressible(lens: Lens) -> None:
 
 def _refuse(lens: Lens, reason: str) -> None:
     """Raises InputError."""
-    raise InputError(
-        f'lens "{lens.name}" cannot be written as OSL, which requires a rotationally symmetric lens: {reason}'
-    )
+    raise InputError(f'lens "{lens.name}" cannot be written as OSL: {reason}')
 
 
 def _why_not(surface: Surface) -> str:

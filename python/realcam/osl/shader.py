@@ -148,6 +148,7 @@ def _name(lens: Lens) -> str:
 
 def _parameters(lens: Lens, focusing: FocusRange, disperses: bool) -> str:
     """Declaration of the shader with its parameters and outputs."""
+    # A lens at infinity is focused by Blender's depth of field.
     focus_m = lens.focus_distance_m if math.isfinite(lens.focus_distance_m) else 0
     full_mm = lens.surfaces[lens.stop_index].clear_semi_diameter_mm
     wide = lens.wide_open().f_number
@@ -159,7 +160,7 @@ def _parameters(lens: Lens, focusing: FocusRange, disperses: bool) -> str:
             "float",
             "focus_m",
             focus_m,
-            f"Focus distance from the film; 0: that of the depth of field; nearest {nearest} m",
+            f"Focus distance from the film; 0: Blender's depth-of-field distance; nearest {nearest} m",
             0,
         ),
         ("float", "f_number", f_number, f"f-number; 0: wide open, f/{wide:.3g}", 0),

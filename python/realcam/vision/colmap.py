@@ -49,22 +49,25 @@ def save_colmap_of_rig(
 ) -> None:
     """Writes the files of save_colmap for a rigid rig, plus rigs.txt and frames.txt (COLMAP 3.12 and later).
 
-    moments: for each moment's picture name, the rig's cameras by name; a picture's path is "camera/moment". model: as
-    for save_colmap. The first camera is COLMAP's reference sensor. Raises InputError, ImageFileError.
+    moments: moments[m][c] is the camera c of the rig at the moment m; its picture's path is "c/m". All moments have the
+    same cameras. model: as for save_colmap. The first camera is COLMAP's reference sensor. Raises InputError and
+    ImageFileError.
     """
     fits = _Fits(model)
-    if not moments:
+    rig = next(iter(moments.values()), {})
+    if not rig:
         raise InputError("a COLMAP model of a rig needs the pictures of at least one pose")
-    rig = next(iter(moments.values()))
     cameras = [f"{i} {fits.line_of(camera)}" for i, camera in enumerate(rig.values(), start=1)]
     first, *others = (camera.world_to_camera for camera in rig.values())
     sensors = [f"CAMERA {i} 1 {_pose_text(relative_pose(pose, first))}" for i, pose in enumerate(others, start=2)]
     images: list[str] = []
     frames: list[str] = []
     for moment, members in moments.items():
-        poses = [camera.world_to_camera for camera in members.values()]
+        if members.keys() != rig.keys():
+            raise InputError(f"moment {moment!r} has the cameras {list(members)}; the first one has {list(rig)}")
+        poses = [members[name].world_to_camera for name in rig]
         data = []
-        for i, (name, pose) in enumerate(zip(members, poses, strict=True), start=1):
+        for i, (name, pose) in enumerate(zip(rig, poses, strict=True), start=1):
             images.append(_image_line(len(images) + 1, pose, i, f"{name}/{moment}"))
             data.append(f"CAMERA {i} {len(images)}")
         frames.append(f"{len(frames) + 1} 1 {_pose_text(poses[0])} {len(data)} {' '.join(data)}")

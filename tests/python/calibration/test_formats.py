@@ -186,6 +186,7 @@ def test_f_theta_uses_the_reference_polynomial(tmp_path: Path) -> None:
         ("cameras.txt", "1 PINHOLE 640 480 500 320 240\n", "expected 4 finite numbers"),
         ("a.json", json.dumps({"image_size_x": 64, "image_size_y": 48, "fov": 90}), "lens_k: expected 0"),
         ("a.yml", "", "is empty"),
+        ("mark.yml", "\ufeff", "is empty"),
     ],
 )
 def test_mistakes_are_told_in_one_line(tmp_path: Path, name: str, text: str, message: str) -> None:

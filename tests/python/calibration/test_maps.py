@@ -87,3 +87,10 @@ def test_what_lies_behind_has_no_map(tmp_path: Path) -> None:
     camera = rc.Lens.load("fisheye-6mm-220deg").calibration(resolution=(60, 60), model="fisheye")
     with pytest.raises(rc.InputError, match="ends at 90 degrees"):
         camera.save(tmp_path / "stmap.exr")
+
+
+def test_a_picture_is_turned_by_rotations_only() -> None:
+    with pytest.raises(rc.InputError, match="rotation must be a rotation: orthonormal, with determinant 1"):
+        CAMERA.undistort(np.zeros((CAMERA.size[1], CAMERA.size[0])), rotation=2 * np.eye(3))
+    with pytest.raises(rc.InputError, match="camera_matrix must be an invertible matrix"):
+        CAMERA.undistort(np.zeros((CAMERA.size[1], CAMERA.size[0])), camera_matrix=np.zeros((3, 3)))

@@ -266,3 +266,18 @@ def test_toml_nested_without_end_is_an_error(nested, what, tmp_path):
     load = {"lens": rc.Lens.load, "sensor": rc.Sensor.load, "shot": rc.Shot.load}[what]
     with pytest.raises(rc.RealcamError, match=r"deep\.toml:1: is nested too deeply"):
         load(path)
+
+
+def test_keys_of_a_surface_form(tmp_path):
+    path = tmp_path / "form.toml"
+    rc.Lens.load("singlet-100mm").save(path)
+    text = path.read_text()
+
+    def load(keys):
+        path.write_text(text.replace("[[surface]]", "[[surface]]\n" + keys, 1))
+        return rc.Lens.load(path).surfaces[0]
+
+    assert load("obscurations = []").obscurations == []
+    assert load("radial_terms = {3 = 1e-6}").radial_terms == {3: 1e-6}
+    with pytest.raises(rc.LensFileError, match=r'powers from 1 to \d+ as keys; this one is "03"'):
+        load("radial_terms = {3 = 1e-6, 03 = 2e-6}")

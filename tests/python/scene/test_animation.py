@@ -155,7 +155,7 @@ def test_what_is_not_played_is_said(tmp_path: Path) -> None:
     warnings = "\n".join(scene.warnings)
     assert 'animation 0 "walk": 1 channels animate the weights of a mesh without morph targets' in warnings
     assert "1 channels animate nodes that have a matrix" in warnings
-    # Scaled to nothing at its end: it stands as it does at time 0.
+    assert 'node "box" is scaled to zero while it moves, and stays as it is at time 0' in warnings
     assert scene.motions == (None,)
     np.testing.assert_array_equal(at(scene, "box", 1), np.eye(4))
 

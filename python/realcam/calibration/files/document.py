@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import json
 import os
 import re
@@ -32,7 +33,7 @@ class Document:
             raise CalibrationFileError(f"{os.fspath(path)}: cannot be read: {reason}") from None
         if len(self.content) > LARGEST_FILE:
             self.fail(f"is larger than {LARGEST_FILE >> 20} MiB, which no calibration is")
-        if not self.content.strip():
+        if not self.content.removeprefix(codecs.BOM_UTF8).strip():
             self.fail("is empty")
 
     def fail(self, reason: str) -> NoReturn:
@@ -60,16 +61,16 @@ class Document:
         start = self.text.lstrip()
         if start.startswith("#usda"):
             return "usda"
-        if start[0] in "{[":
+        if start.startswith(("{", "[")):
             return "json"
-        if start[0] == "<":
+        if start.startswith("<"):
             return "xml"
         first = next((line for line in start.splitlines() if line.strip() and not line.startswith(("#", "%"))), "")
         return "yaml" if re.match(r"(---|[\w\"'./ -]+:(\s|$))", first) else "text"
 
     @cached_property
     def data(self) -> Any:
-        """The values of a JSON, YAML or OpenCV XML file; None for other syntaxes."""
+        """The values of a JSON or YAML file; None for other syntaxes, such as XML."""
         if self.syntax == "json":
             return self._json()
         if self.syntax == "yaml":

@@ -76,10 +76,12 @@ class RingSlider(Element, component="static/ring.js"):
         async def on_turned(event: GenericEventArguments) -> None:
             arguments = event.args if isinstance(event.args, dict) else {}
             step, turn, self.gesture = arguments.get("step"), arguments.get("turn"), arguments.get("gesture")
-            if isinstance(step, int) and 0 <= step <= self._props["last"]:
-                await turned(step)
-            self._props["answered"] = turn
-            self.update()
+            try:
+                if isinstance(step, int) and 0 <= step <= self._props["last"]:
+                    await turned(step)
+            finally:  # a slider without an answer stays at the user's position
+                self._props["answered"] = turn
+                self.update()
 
         self.on("turned", on_turned, throttle=0.09)
 

@@ -304,9 +304,10 @@ TEST_CASE("glTF: numbers that no material can have become the nearest, with one 
     CHECK(m.specular_glossiness->alpha == 1.0f);
     check_vec(m.specular_glossiness->specular_factor, 1, 0, 1);
     CHECK(m.specular_glossiness->glossiness_factor == 0.0f);
-    CHECK(file.scene.warnings.size() == 1);
-    // 4 + 2 of the base, normal and cutoff, ior and transmission, 4 of the volume, 2 and 3 of the coats, 6.
-    CHECK(file.warned("25 numbers of its materials are out of their range; the nearest number in the range is used"));
+    CHECK(file.scene.warnings.size() == 2);
+    // 4 + 2 of the base, normal and cutoff, ior and transmission, 3 of the volume, 2 and 3 of the coats, 6.
+    CHECK(file.warned("24 numbers of its materials are out of their range; the nearest number in the range is used"));
+    CHECK(file.warned("an attenuationDistance must be positive; volumes without one absorb no light"));
 
     CHECK(file.extended("KHR_materials_volume", R"("attenuationDistance":1e-300)").volume.attenuation_distance > 0);
     CHECK(std::isinf(
