@@ -23,16 +23,16 @@ void def_pickle(pybind11::class_<T, Options...>& type, const State& state, const
     type.def_static("_restored", restored, "state"_a);
 }
 
-/// Check of a class whose members are all that has to be checked.
-struct MembersOnly {
+/// The default check of unpickled values, which accepts all: the checks of the members suffice.
+struct NoFurtherCheck {
     template <class T>
     void operator()(const T&) const {}
 };
 
-/// Defines ==, copy, deepcopy and pickle for a class. Unpickled values are checked (restored.hpp), and by
-/// `check(value)`, which throws a realcam::Error, for results of calculations that have no public constructor. Copies
-/// are made through the pickle state: for results whose arrays the user may modify.
-template <class T, class... Options, class Check = MembersOnly>
+/// Defines == and pickling for a class. copy and deepcopy follow from pickling, so that a copy has arrays of its own.
+/// Members of unpickled values are checked (restored.hpp). `check(value)`, which throws a realcam::Error, is a further
+/// check, for classes without a public constructor.
+template <class T, class... Options, class Check = NoFurtherCheck>
 void def_result(pybind11::class_<T, Options...>& type, const Check& check = {}) {
     namespace py = pybind11;
     using namespace py::literals;

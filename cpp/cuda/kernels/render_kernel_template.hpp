@@ -11,26 +11,25 @@ namespace realcam {
 
 namespace render_kernel_detail {
 
-/// Six blocks of four warps hide more latency than four blocks without register spills: 4% faster on an H200, in spite
-/// of the spills.
+/// With six blocks of four warps, registers are spilled to memory; with four blocks they are not. Six are 4% faster on
+/// an H200 nevertheless, because they hide more latency.
 constexpr int kBlocksPerMultiprocessor = 6;
 
 /// Probe of advance_paths that measures the clock cycles of each stage, in the first thread of every sixteenth block.
-/// The test whether a thread measures costs two instructions. Counts are in shared memory, because no registers are
-/// free while a ray is traced.
+/// Counts are in shared memory, because no registers are free while a ray is traced.
 class StageClock {
 public:
     struct Count {
         std::uint32_t clocks[3];  ///< per stage; 32 bits suffice for a launch, which is short
-        std::uint32_t since;
+        std::uint32_t since;  ///< clock at which the current stage began
         RenderStage stage;
     };
 
     __device__ explicit StageClock(Count& count) : count_(count) {
-        if (is_running()) count_ = {{0, 0, 0}, now(), RenderStage::other};
+        if (measures()) count_ = {{0, 0, 0}, now(), RenderStage::other};
     }
     __device__ void enter(RenderStage next) {
-        if (!is_running()) return;
+        if (!measures()) return;
         const std::uint32_t time = now();
         count_.clocks[static_cast<int>(count_.stage)] += time - count_.since;
         count_.since = time;
@@ -38,7 +37,7 @@ public:
     }
     /// Adds the cycles to the counters of all launches.
     __device__ void report(RenderCounts* counts) {
-        if (!is_running()) return;
+        if (!measures()) return;
         enter(RenderStage::other);
         const unsigned long long lens = count_.clocks[static_cast<int>(RenderStage::lens)],
                                  scene = count_.clocks[static_cast<int>(RenderStage::scene)];
@@ -48,7 +47,7 @@ public:
     }
 
 private:
-    __device__ static bool is_running() { return blockIdx.x % 16 == 0 && threadIdx.x == 0; }
+    __device__ static bool measures() { return blockIdx.x % 16 == 0 && threadIdx.x == 0; }
     __device__ static std::uint32_t now() {
         std::uint32_t time;
         asm volatile("mov.u32 %0, %%clock;" : "=r"(time));
@@ -87,9 +86,9 @@ struct ThreadSums {
     }
 };
 
-/// Adds a contribution to a pixel that several threads may add to. These arrive in any order; as they are rounded to
-/// integer multiples of 2^-24, up to 2^53 units in total, their sum is the same in every order. `dither`: random number
-/// from 0 to 1, which makes the rounding unbiased.
+/// Adds a contribution to a pixel that several threads may add to, in any order. Contributions are rounded to multiples
+/// of 2^-24, of which doubles hold sums up to 2^53 exactly, so that their sum is independent of the order. `dither`:
+/// random number from 0 to 1, which makes the rounding unbiased.
 __device__ inline void add_shared(double& sum, double value, float dither) {
     atomicAdd(&sum, 0x1p-24 * floor(0x1p24 * value + static_cast<double>(dither)));
 }

@@ -12,13 +12,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Exit pupil as seen from a film point, in optical direction cosines of light that travels towards the film: x and y
-/// components in the tangent plane of the film.
+/// Exit pupil as seen from a film point, in optical direction cosines (index times direction) of light that travels
+/// towards the film: x and y components in the tangent plane of the film.
 struct FilmPupil {
     /// Irradiance for unit radiance of the whole scene: the area of the pupil. At the centre of a rotationally
     /// symmetric lens it is pi sin^2(theta').
     double irradiance = 0;
-    std::vector<std::array<Vec2<double>, 2>> outline;  ///< segments of the edge of the light, each with its end points
+    std::vector<std::array<Vec2<double>, 2>> outline;  ///< segments of the pupil's edge, each with its end points
 };
 
 /// Computes the exit pupil of a film point (mm) by real rays at one wavelength. Its edges are found on radial scan
@@ -30,9 +30,9 @@ FilmPupil film_pupil(const LensSystem& lens, double wavelength_nm, Vec2<double> 
 /// symmetric.
 LensSystem with_round_stop(LensSystem lens);
 
-/// All light that reaches one film point (a Bundle of bundle_quadrature.hpp). The entry point of a ray consists of its
-/// optical direction cosines, towards the scene, in the tangent plane of the film. In these the light is uniform
-/// (pupil_view.hpp).
+/// All light that reaches one film point (a Bundle of bundle_quadrature.hpp). The parameters of a ray, which
+/// a Bundle calls its entry point, are its optical direction cosines, towards the scene, in the tangent plane of the
+/// film. In these the light is uniform (pupil_view.hpp).
 class FilmBundle {
 public:
     using Entry = Vec2<double>;

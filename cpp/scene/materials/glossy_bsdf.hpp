@@ -32,11 +32,9 @@ REALCAM_INLINE GlossySurface glossy_surface(const SurfacePoint& point) {
             point.specular_weight, unit_range(point.metallic), alpha_of(point.roughness)};
 }
 
-/// Returns the lobe of a surface by which lights are chosen. `normal`: on the eye's side.
+/// Returns the lobe that weights the choice of lights at a surface. `normal`: on the eye's side.
 REALCAM_INLINE LightLobe light_lobe(const GlossySurface& surface, Vec3f normal, Vec3f to_eye) {
-    // Schlick's term.
-    const float cosine = dot(normal, to_eye), complement = 1.0f - select(cosine > 0.0f, cosine, 0.0f),
-                grazing = complement * complement * complement * complement * complement;
+    const float cosine = dot(normal, to_eye), grazing = fifth_power(1.0f - select(cosine > 0.0f, cosine, 0.0f));
     const float base = largest(surface.base), f0 = largest(surface.f0);
     const float dielectric = f0 + (surface.f90 - f0) * grazing, metal = base + (1.0f - base) * grazing;
     const float specular = dielectric + (metal - dielectric) * surface.metallic,
@@ -48,8 +46,8 @@ REALCAM_INLINE LightLobe light_lobe(const GlossySurface& surface, Vec3f normal, 
     return {to_eye, surface.alpha, select(is_used, specular / (specular + diffuse), 0.0f)};
 }
 
-/// Returns the lobe of any surface point by which lights are chosen. If GlossyBsdf cannot represent the material, the
-/// lobe has a share of 0, and lights are chosen by their illuminance alone.
+/// Returns the lobe that weights the choice of lights at any surface point. If GlossyBsdf cannot represent the
+/// material, the lobe has a share of 0, and lights are chosen by their illuminance alone.
 REALCAM_INLINE LightLobe light_lobe(const SurfacePoint& point, Vec3f to_eye) {
     return is_glossy(point) ? light_lobe(glossy_surface(point), point.normal, to_eye) : LightLobe{};
 }
@@ -72,21 +70,22 @@ public:
           geometric_normal_(geometric_normal),
           eye_(frame_.to_local(to_eye)),
           alpha_(surface.alpha),
-          to_eye_(inlined_ggx_albedo(eye_.z, alpha_)) {
+          eye_albedo_(inlined_ggx_albedo(eye_.z, alpha_)) {
         const GgxAlbedo mean = inlined_ggx_mean_albedo(alpha_);
         energy_loss_ = 1.0f - mean.all;
         above_diffuse_ = FacetReflectance::from_f0_f90(surface.f0, surface.f90, energy_loss_);
         reflectance_ =
             mix(above_diffuse_, FacetReflectance::from_f0_f90(surface.base, 1.0f, energy_loss_), surface.metallic);
-        // Light that the specular lobe transmits to the Lambertian one: for the eye's direction, and on average.
-        const Color transmitted_to_eye = grey(1.0f) - above_diffuse_.albedo(to_eye_);
+        // Fractions that the microfacets transmit to the Lambertian lobe below: for the eye's direction, and on
+        // average.
+        const Color transmitted_to_eye = grey(1.0f) - above_diffuse_.albedo(eye_albedo_);
         const Color transmitted = grey(1.0f) - above_diffuse_.albedo(mean),
                     diffuse = (1.0f - surface.metallic) * surface.base;
         const auto at_least = [](float v) { return select(v > 1e-4f, v, 1e-4f); };
         diffuse_ = diffuse * transmitted_to_eye /
                    Color{at_least(transmitted.r), at_least(transmitted.g), at_least(transmitted.b)};
         diffuse_albedo_ = largest(diffuse * transmitted_to_eye);
-        specular_albedo_ = largest(reflectance_.albedo(to_eye_));
+        specular_albedo_ = largest(reflectance_.albedo(eye_albedo_));
     }
 
     /// Albedos for the eye's direction, by which a lobe is chosen.
@@ -99,19 +98,19 @@ public:
         const bool is_possible = (light.z > 0.0f) & (dot(geometric_normal_, to_light) > 0.0f);
         // Directions below the surface must not index outside the tables.
         const float cosine = select(is_possible, light.z, 1.0f), pdf = kInvPi * cosine;
-        const GgxAlbedo to_light_facets = inlined_ggx_albedo(cosine, alpha_);
-        const Color diffuse = pdf * diffuse_ * (grey(1.0f) - above_diffuse_.albedo(to_light_facets));
+        const GgxAlbedo light_albedo = inlined_ggx_albedo(cosine, alpha_);
+        const Color diffuse = pdf * diffuse_ * (grey(1.0f) - above_diffuse_.albedo(light_albedo));
         const Vec3f h = normalized(eye_ + light);
         const float density = ggx_density(h, alpha_) / (4.0f * eye_.z), lambda = ggx_lambda(eye_, alpha_);
-        // See ggx_masking and ggx_masking_shadowing.
+        // ggx_masking and ggx_masking_shadowing, with the terms that they share.
         const float masking = 1.0f / (1.0f + lambda),
                     masking_shadowing = 1.0f / (1.0f + lambda + ggx_lambda(light, alpha_));
-        const float both_losses = (1.0f - to_eye_.all) * (1.0f - to_light_facets.all);
+        const float both_losses = (1.0f - eye_albedo_.all) * (1.0f - light_albedo.all);
         const float multiple_scattering = select(energy_loss_ > 1e-6f, both_losses * pdf / energy_loss_, 0.0f);
         const Color specular =
             (density * masking_shadowing) * schlick(reflectance_.f0, reflectance_.f90, dot(eye_, h)) +
             multiple_scattering * reflectance_.multiple;
-        const float specular_pdf = to_eye_.all * masking * density + (1.0f - to_eye_.all) * (2.0f * kSpherePdf);
+        const float specular_pdf = eye_albedo_.all * masking * density + (1.0f - eye_albedo_.all) * (2.0f * kSpherePdf);
         const Color black = {0, 0, 0};
         return {select(is_possible, diffuse, black), select(is_possible, specular, black),
                 select(is_possible, pdf, 0.0f), select(is_possible, specular_pdf, 0.0f)};
@@ -119,12 +118,12 @@ public:
 
     /// Samples a direction of one lobe; it may lie below the surface.
     REALCAM_INLINE Vec3f sample(bool is_diffuse, Vec2f u) const {
-        const Vec3f h = sample_ggx(eye_, alpha_, {u.x / to_eye_.all, u.y});
+        const Vec3f h = sample_ggx(eye_, alpha_, {u.x / eye_albedo_.all, u.y});
         const Vec3f mirrored = (2.0f * dot(eye_, h)) * h - eye_;
         // Multiple scattering is sampled uniformly over the hemisphere (MicrofacetReflection::sample).
-        const float rescaled = (u.x - to_eye_.all) / (1.0f - to_eye_.all);
+        const float rescaled = (u.x - eye_albedo_.all) / (1.0f - eye_albedo_.all);
         const Vec3f uniform = sample_sphere({select(rescaled < 1.0f, 0.5f * rescaled, 0.5f), u.y});
-        const Vec3f specular = select(u.x < to_eye_.all, mirrored, uniform);
+        const Vec3f specular = select(u.x < eye_albedo_.all, mirrored, uniform);
         return frame_.to_world(select(is_diffuse, sample_cosine({0, 0, 1}, u), specular));
     }
 
@@ -140,8 +139,8 @@ private:
     Vec3f geometric_normal_;
     Vec3f eye_;  ///< direction to the eye, local
     float alpha_;  ///< GGX alpha
-    float energy_loss_;  ///< see MicrofacetReflection
-    GgxAlbedo to_eye_;  ///< directional albedo of single scattering for the eye's direction
+    float energy_loss_;  ///< 1 - mean albedo of single scattering
+    GgxAlbedo eye_albedo_;  ///< directional albedo of single scattering for the eye's direction
     FacetReflectance above_diffuse_, reflectance_;
     Color diffuse_;  ///< reflectance times all factors that depend only on the direction of view
     float diffuse_albedo_, specular_albedo_;

@@ -10,7 +10,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Entrance-pupil bounds of the light that makes starbursts. Owns the memory of its view.
+/// Bounds of the entrance pupil, for each direction to a light, of the rays without reflections. Starbursts are traced
+/// from lights along this path as ghosts are along theirs, with the same view. Owns the memory of its view.
 class StarburstTables {
 public:
     /// `film_radius`: radius of a circle that contains the film, mm. `direct_path`: direct path of the same lens.
@@ -35,8 +36,8 @@ public:
     DiffractionView view(double film_steradians) const;
 
 private:
-    /// Number of film radii of the table, for a circular stop and for one with blades; and of azimuths with blades.
-    static constexpr int kRadii = 12, kRadiiWithBlades = 5, kAzimuths = 8;
+    static constexpr int kRadii = 12;  ///< number of film radii of a circular stop
+    static constexpr int kRadiiWithBlades = 5, kAzimuths = 8;  ///< numbers of film radii and azimuths with blades
 
     static InputError no_light(const LensSystem& lens) {
         return InputError("diffraction: no light passes lens \"" + lens.name + "\" to the film centre");
@@ -44,14 +45,15 @@ private:
     /// True if blades, and not the wide-open rim, form the aperture.
     static bool has_blades(const LensSystem& lens) { return lens.iris.blades > 0 && !lens.is_wide_open(); }
 
+    /// Returns a film radius, mm.
     double radius_of(int row) const { return film_radius_ * row / (radii_ - 1); }
-    /// Azimuth of a sector, at uniform steps of the view's azimuth parameter, which runs from 0 to 4 along a square.
+    /// Returns the azimuth of a sector in radians. Sectors have equal lengths on the square |x| + |y| = 1.
     double azimuth_of(int sector) const;
 
     /// Bounds of the pupil as seen from each film radius. Where no light arrives, those of the previous radius.
     std::vector<DirectionBox> boxes_of(const LensSystem& lens, const PupilTracer& tracer) const;
 
-    /// Appends a node with its alias tables and edges.
+    /// Appends the node of a film point with its alias tables and edges.
     void add(const ApertureDiffraction& diffraction);
 
     double film_radius_;

@@ -26,23 +26,23 @@ def pixel_matrix(centre: Sequence[float], c: float, d: float, e: float) -> Array
 
 
 def backward_model(coefficients: Sequence[float], matrix: Array, largest_angle: float) -> CentralModel:
-    """theta = a1 d + a2 d^2 + ..., d in pixels."""
+    """Returns the model of theta = a1 r + a2 r^2 + ..., theta in radians, r in pixels from the centre."""
     return CentralModel(AnglePolynomial(tuple(coefficients), largest_angle), BrownConrady(), matrix)
 
 
 def forward_model(coefficients: Sequence[float], matrix: Array, largest_angle: float) -> CentralModel:
-    """d = b1 theta + b2 theta^2 + ..., d in pixels."""
+    """Returns the model of r = b1 theta + b2 theta^2 + ..., the inverse direction of backward_model."""
     return CentralModel(Equidistant(largest_angle), BrownConrady(RationalRadius(tuple(coefficients))), matrix)
 
 
-MAKERS = {"PIXELDIST_TO_ANGLE": backward_model, "ANGLE_TO_PIXELDIST": forward_model}
+MODEL_OF_DIRECTION = {"PIXELDIST_TO_ANGLE": backward_model, "ANGLE_TO_PIXELDIST": forward_model}
 
 
 def polynomial(entries: Entries, key: str) -> list[float]:
     """Returns the coefficients from that of the first power on; that of the power 0 must be 0."""
-    constant, *rest = [*entries.numbers(key), 0.0, 0.0][:64]
-    if constant or rest[0] <= 0:
-        entries.fail(key, "a polynomial with the constant 0 and a positive coefficient after it")
+    constant, *rest = [*entries.numbers(key), 0.0, 0.0]  # for lists that are too short
+    if constant or rest[0] <= 0 or len(rest) > 64:
+        entries.fail(key, "a polynomial with the constant 0, a positive coefficient after it, and at most 62 more")
     return rest
 
 
@@ -52,9 +52,10 @@ def angle_limit(value: float) -> float:
 
 
 class FTheta(NamedTuple):
-    """Parameters of a model. direction: a key of MAKERS. coefficients: of ascending powers, the constant 0 first.
+    """Parameters of a model.
 
-    centre: in realcam's pixels. cde: of the matrix [c d; e 1]. largest_angle: radians.
+    direction: a key of MODEL_OF_DIRECTION. coefficients: of ascending powers, the constant 0 first. centre: in
+    realcam's pixels. cde: of the matrix [c d; e 1]. largest_angle: radians.
     """
 
     direction: str
@@ -66,8 +67,8 @@ class FTheta(NamedTuple):
 
 def ftheta_of(terms: Terms) -> FTheta:
     """Returns the f-theta parameters of a model. Raises Inexpressible."""
-    (a, b, u0), (c, scale, v0) = terms.matrix[:2].tolist()
-    cde = (a / scale, b / scale, c / scale)
+    (xx, xy, u0), (yx, scale, v0) = terms.matrix[:2].tolist()
+    cde = (xx / scale, xy / scale, yx / scale)
     projection = terms.projection
     if isinstance(projection, AnglePolynomial) and is_undistorted(terms):
         coefficients = [k / scale**power for power, k in enumerate(projection.coefficients, start=1)]
@@ -81,7 +82,7 @@ def ftheta_of(terms: Terms) -> FTheta:
 
 def inverse_coefficients(ftheta: FTheta, degree: int = 5) -> list[float]:
     """Returns the polynomial of the other direction that fits best up to the largest angle; it is no exact inverse."""
-    model = MAKERS[ftheta.direction](ftheta.coefficients[1:], np.eye(3), ftheta.largest_angle)
+    model = MODEL_OF_DIRECTION[ftheta.direction](ftheta.coefficients[1:], np.eye(3), ftheta.largest_angle)
     angles = np.linspace(0, min(ftheta.largest_angle, model.largest_angle) * (1 - 1e-9), 512)
     points = np.column_stack([np.sin(angles), np.zeros_like(angles), np.cos(angles)])
     distances = model.project(points)[0][:, 0]

@@ -15,20 +15,20 @@ from ..files.output import json_content
 from ..models.terms import terms_of
 from ..stated_camera import StatedCamera
 from .format import Cameras, Format, Options, Saved, Writer, sole
-from .ftheta import MAKERS, angle_limit, ftheta_of, inverse_coefficients, pixel_matrix, polynomial
+from .ftheta import MODEL_OF_DIRECTION, angle_limit, ftheta_of, inverse_coefficients, pixel_matrix, polynomial
 
 POLYNOMIALS = {"PIXELDIST_TO_ANGLE": "pixeldist_to_angle_poly", "ANGLE_TO_PIXELDIST": "angle_to_pixeldist_poly"}
 
 
 def _camera(entries: Entries) -> StatedCamera:
-    reference = entries.choice("reference_poly", MAKERS)
+    reference = entries.choice("reference_poly", MODEL_OF_DIRECTION)
     if entries.values.get("external_distortion_parameters") is not None:
         entries.fail("external_distortion_parameters", "null; distortions by a windshield are not read")
     x, y = entries.numbers("principal_point", 2)
     c, d, e = entries.numbers("linear_cde", 3) if "linear_cde" in entries else (1.0, 0.0, 0.0)
     coefficients = polynomial(entries, POLYNOMIALS[reference])
     limit = angle_limit(entries.positive("max_angle"))
-    model = MAKERS[reference](coefficients, pixel_matrix((x + 0.5, y + 0.5), c, d, e), limit)
+    model = MODEL_OF_DIRECTION[reference](coefficients, pixel_matrix((x + 0.5, y + 0.5), c, d, e), limit)
     return StatedCamera(
         model,
         entries.size("resolution"),
@@ -41,7 +41,7 @@ def _camera(entries: Entries) -> StatedCamera:
 
 def _values(camera: StatedCamera) -> Mapping[str, Any]:
     ftheta = ftheta_of(terms_of(camera))
-    (other,) = set(MAKERS) - {ftheta.direction}
+    (other,) = set(MODEL_OF_DIRECTION) - {ftheta.direction}
     return {
         "type": "ftheta",
         "resolution": list(camera.size),

@@ -22,7 +22,7 @@ from ..rig import transforms_from
 from ..stated_camera import StatedCamera
 from ..transforms import inverse_of, turned
 from .format import Cameras, Format, Options, Saved, Writer, unknown_model
-from .ftheta import MAKERS, angle_limit, ftheta_of, pixel_matrix, polynomial
+from .ftheta import MODEL_OF_DIRECTION, angle_limit, ftheta_of, pixel_matrix, polynomial
 
 # Margin about the angle of the farthest corner, as the file states no largest angle.
 CORNER_MARGIN = 1.02
@@ -67,7 +67,7 @@ def _camera(entries: Entries, name: str) -> StatedCamera:
         properties.number("linear-d", 0.0),
         properties.number("linear-e", 0.0),
     )
-    make = MAKERS[RIG_POLYNOMIALS[direction]]
+    make = MODEL_OF_DIRECTION[RIG_POLYNOMIALS[direction]]
     limit = _corner_angle(make(coefficients, matrix, np.pi), size) * CORNER_MARGIN
     model = make(coefficients, matrix, angle_limit(limit))
     return StatedCamera(
