@@ -115,7 +115,7 @@ REALCAM_INLINE double exp_of_negative(double x) {
     return sum * std::bit_cast<double>(exponent << 52);
 }
 
-/// Samples N Poisson numbers by inversion, for means up to kLargestInvertedMean; counts for larger means are undefined.
+/// Samples N Poisson numbers by inversion, for means below kLargestInvertedMean; counts for others are undefined.
 /// `u`: uniform random numbers in (0, 1) of 53 bits. A count is the number of partial sums of the probabilities that
 /// are less than u. All lanes iterate until the last one is done. This is faster than one lane after the other, because
 /// a step has no division and no divergent branch.
@@ -152,10 +152,9 @@ REALCAM_INLINE std::uint32_t attempt_bits(std::uint32_t stream, std::uint32_t at
 }
 
 /// Samples a Poisson number with a finite mean of at least 10, by rejection. `stream`: the random stream of the number.
-/// `first_attempt`: index of the first attempt to be made, if the caller has made earlier ones, which were rejected.
-REALCAM_HD inline double poisson_by_rejection(double mean, std::uint32_t stream, std::uint32_t first_attempt = 0) {
+REALCAM_HD inline double poisson_by_rejection(double mean, std::uint32_t stream) {
     const PoissonHat hat(mean);
-    for (std::uint32_t i = first_attempt;; ++i) {
+    for (std::uint32_t i = 0;; ++i) {
         const double u = open_unit_double(attempt_bits(stream, i, 0)), v = open_unit_double(attempt_bits(stream, i, 1));
         const PoissonAttempt attempt = hat.attempt(u, v);
         if (attempt.is_accepted || (attempt.is_possible && hat.is_accepted_slowly(attempt.count, u, v)))

@@ -59,10 +59,6 @@ private:
 
 }  // namespace realcam::shot
 
-namespace realcam {
-class Session;
-}
-
 namespace realcam::shot {
 
 /// A scene with its lights, and the camera that photographs it.

@@ -62,6 +62,19 @@ std::vector<Affine<double>> instances_of(const Json& node, GltfAccessors& access
     return out;
 }
 
+/// True if the transform of a node consists of lists of numbers of the right lengths.
+bool has_valid_transform(const Json& node) {
+    const auto is_list = [&](const char* key, std::size_t length) {
+        const Json& list = node[key];
+        if (list.is_null()) return true;
+        if (list.size() != length) return false;
+        for (std::size_t i = 0; i < length; ++i)
+            if (!list[i].is_number()) return false;
+        return true;
+    };
+    return is_list("matrix", 16) && is_list("translation", 3) && is_list("rotation", 4) && is_list("scale", 3);
+}
+
 /// Implementation of read_gltf_nodes. Nodes of the file are identified by their indices.
 class NodeReader {
 public:
@@ -77,6 +90,9 @@ public:
         find_parents();
         const std::vector<std::size_t> roots = find_roots(scene_name);
         for (const std::size_t root : roots) add_tree(root);
+        if (bad_transforms_ > 0)
+            scene_.warnings.push_back(std::to_string(bad_transforms_) +
+                                      " nodes have a malformed matrix, translation, rotation or scale; it is left out");
         return std::move(file_indices_);
     }
 
@@ -184,6 +200,7 @@ private:
     std::uint32_t add_node(std::size_t file_index, std::uint32_t parent) {
         checkpoint_.pass();
         const Json& from = nodes_[file_index];
+        if (!has_valid_transform(from)) ++bad_transforms_;
         FileNode node{printable(from["name"].text()), transform_of(from), parent};
         const Json& light = from["extensions"]["KHR_lights_punctual"]["light"];
         if (!light.is_null()) node.light = existing(light, scene_.lights.size(), file_index, "light");
@@ -233,6 +250,7 @@ private:
     std::vector<std::size_t> parents_;  // of each node of the file, or kNoGltfNode
     GltfNodeIndices file_indices_;
     std::size_t bytes_ = 0;  // size of the instances' nodes
+    std::size_t bad_transforms_ = 0;  // number of nodes
 };
 
 }  // namespace

@@ -20,8 +20,8 @@ class FieldCurves(ShortText):
 
     fields_deg: (F,); wavelengths_nm: (W,).
     tangential_mm, sagittal_mm: (W, F), foci of real rays close to the chief ray, along the axis, behind the film.
-    petzval_mm: (F,), Petzval surface at the design wavelength, to third order; nan for afocal lenses, and from 90
-      degrees on.
+    petzval_mm: (F,), Petzval surface at the design wavelength, to third order; nan for afocal lenses, from 90
+      degrees on, and for lenses without third-order sums (Lens.seidel).
     """
 
     fields_deg: Doubles
@@ -80,8 +80,8 @@ def plot_field_curves(curves: FieldCurves, axes: Axes) -> None:
         axes.plot(curves.sagittal_mm[w], curves.fields_deg, "--", color=colour, label=f"sagittal{suffix}")
     axes.plot(curves.petzval_mm, curves.fields_deg, ":", color=style.GREY, label="Petzval")
     style.field_upwards(axes, curves.fields_deg)
-    shown = np.concatenate([curves.tangential_mm.ravel(), curves.sagittal_mm.ravel()])
-    low, high = min(np.nanmin(shown), 0.0), max(np.nanmax(shown), 0.0)
+    shown = np.concatenate([[0.0], curves.tangential_mm.ravel(), curves.sagittal_mm.ravel()])
+    low, high = np.nanmin(shown), np.nanmax(shown)
     margin = 0.15 * (high - low) or 1.0
     axes.set_xlim(low - margin, high + margin)  # the Petzval curve may be cut off
     axes.set_xlabel("focus behind the film / mm")

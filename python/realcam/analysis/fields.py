@@ -81,7 +81,14 @@ def fields_of(lens: Lens, fields_deg: ArrayLike | None, count: int, bundles: Bun
     """(F,): the specified angles; by default `count` from the axis to the film corner, equidistant in image height."""
     if fields_deg is not None:
         return numbers_of(fields_deg, "fields_deg")
-    return field_angles_deg(lens, np.linspace(0, 1, count), bundles)
+    return field_angles_deg(lens, np.linspace(0, 1, checked_samples(count)), bundles)
+
+
+def checked_samples(samples: int) -> int:
+    """Returns the number of samples of a curve. Raises InputError unless it is 1 or more."""
+    if samples < 1:
+        raise InputError(f"samples must be 1 or more; it is {samples}")
+    return samples
 
 
 def three_fields(lens: Lens, fields_deg: ArrayLike | None, bundles: Bundles) -> Doubles:

@@ -18,6 +18,7 @@ from .fields import (
     Doubles,
     analysis_inputs,
     bundles_of,
+    checked_samples,
     default_frequencies_per_mm,
     fields_of,
     numbers_of,
@@ -203,7 +204,7 @@ def mtf_over_frequency(
     return mtf(
         lens,
         fields_deg,
-        np.linspace(0, top, samples),
+        np.linspace(0, top, checked_samples(samples)),
         wavelengths_nm=wavelengths_nm,
         method=method,
         object_distance_m=object_distance_m,
@@ -255,7 +256,7 @@ def mtf_through_focus(
     """
     frequency = float(default_frequencies_per_mm(lens)[1]) if frequency_per_mm is None else frequency_per_mm
     planes = (
-        np.linspace(-1, 1, samples) * lens.first_order().f_number / max(frequency, 1e-9)
+        np.linspace(-1, 1, checked_samples(samples)) * lens.first_order().f_number / max(frequency, 1e-9)
         if defocus_mm is None
         else numbers_of(defocus_mm, "defocus_mm")
     )
@@ -288,7 +289,7 @@ def plot_mtf_over_frequency(data: Mtf, axes: Axes) -> None:
         axes.plot(data.frequencies_per_mm, data.sagittal[0, f], "--", color=style.field_colour(f))
     if data.method == "diffraction":
         axes.plot(data.frequencies_per_mm, data.limit_tangential[0], ":", color=style.text_colour(), label="limit")
-    axes.set_xlim(0, float(data.frequencies_per_mm.max()))
+    axes.set_xlim(0, max(float(data.frequencies_per_mm.max()), 1e-9))
     axes.set_xlabel("periods per mm")
     _add_labels(axes, "MTF", data)
 
@@ -307,7 +308,7 @@ def plot_mtf_over_field(data: Mtf, axes: Axes) -> None:
                 linewidth=0.8,
                 label="limit" if k == 0 else "_nolegend_",
             )
-    axes.set_xlim(0, max(float(data.fields_deg.max()), 1e-9))
+    axes.set_xlim(*style.field_limits(data.fields_deg))
     axes.set_xlabel("field / °")
     _add_labels(axes, "MTF over the field", data)
 

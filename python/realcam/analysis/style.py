@@ -99,10 +99,16 @@ def coloured(wavelengths_nm: NDArray[np.float64]) -> list[tuple[str, str]]:
     return list(zip(wavelength_colours(wavelengths_nm), texts_of(wavelengths_nm, "nm"), strict=True))
 
 
+def field_limits(fields_deg: NDArray[np.float64]) -> tuple[float, float]:
+    """Returns the limits of an axis of field angles, which contains the optical axis."""
+    low, high = min(float(fields_deg.min()), 0.0), max(float(fields_deg.max()), 0.0)
+    return low, high if high > low else low + 1e-9
+
+
 def field_upwards(axes: Axes, fields_deg: NDArray[np.float64]) -> None:
-    """Formats the y axis as field angle from 0 upwards, and draws the line x = 0."""
+    """Formats the y axis as field angle upwards, and draws the line x = 0."""
     zero_lines(axes, y=False)
-    axes.set_ylim(0, max(float(fields_deg.max()), 1e-9))
+    axes.set_ylim(*field_limits(fields_deg))
     axes.set_ylabel("field / °")
 
 

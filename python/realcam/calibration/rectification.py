@@ -47,7 +47,8 @@ def rotation_of(matrix: Array, name: str) -> Array:
     if np.abs(matrix @ matrix.T - np.eye(3)).max() > 1e-3 or np.linalg.det(matrix) < 0:
         raise InputError(f"{name} must be a rotation: orthonormal, with determinant 1")
     u, _, v = np.linalg.svd(matrix)
-    return u @ v
+    rotation: Array = u @ v
+    return rotation
 
 
 def _rigid(T: Array) -> tuple[Array, Array]:

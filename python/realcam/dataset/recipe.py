@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import os
 import re
+import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from .._core import InputError, RealcamError, RenderSettings, Sensor, _did_you_mean, _read_toml
+from .._core import InputError, Lens, RealcamError, RenderSettings, Sensor, _did_you_mean, _read_toml
 from ..calibration import Calibration
 from ..files import record_input
 from .calibrated import calibrations_in
@@ -35,7 +36,8 @@ class Recipe:
 
     count: number of pictures. size: columns and rows of a picture; (): those of the calibration, or 640 and 480. seed:
     the same recipe and seed give the same pictures. lenses: names or files; one is chosen at random for each picture;
-    "auto": the bundled lens that resembles the calibration most, which is the default with a calibration.
+    "auto": the bundled lens that resembles the calibration most. (): "auto" with a calibration, otherwise five bundled
+    lenses.
     f_stops: range of the factor, 1 or more, by which the lens's f-number is multiplied. objects: range of the number
     of objects in a scene. models: files of the objects (.glb, .obj, ...) by category, scaled so that their largest
     extent is one metre before each object gets its own size; {}: boxes, balls and pyramids.
@@ -58,7 +60,7 @@ class Recipe:
     count: int = 200
     size: tuple[int, ...] = ()
     seed: int = 0
-    lenses: tuple[str, ...] = _LENSES
+    lenses: tuple[str, ...] = ()
     f_stops: tuple[float, float] = (1.0, 3.0)
     objects: tuple[int, int] = (3, 8)
     models: Mapping[str, str] = field(default_factory=dict)
@@ -99,10 +101,12 @@ class Recipe:
             low, high = getattr(self, name)
             if not 0 <= low <= high:
                 raise InputError(f"{name} must be a range, the smaller number first")
-        if self.next_after_s > MOVES_FOR_S / 2 or self.camera_turn_deg_s[1] >= 180:
-            raise InputError(f"next_after_s must be {MOVES_FOR_S / 2} s or less, and camera_turn_deg_s below 180")
-        if self.f_stops[0] < 1 or self.iso[0] <= 0 or not self.lenses:
-            raise InputError("f_stops must be 1 or more, iso above 0, and lenses name at least one")
+        if max(self.next_after_s, self.readout_time_s) > MOVES_FOR_S / 2 or self.camera_turn_deg_s[1] >= 180:
+            raise InputError(
+                f"next_after_s and readout_time_s must be {MOVES_FOR_S / 2} s or less, and camera_turn_deg_s below 180"
+            )
+        if self.f_stops[0] < 1 or self.iso[0] <= 0:
+            raise InputError("f_stops must be 1 or more, and iso above 0")
         if self.board and (len(self.board) != 2 or min(self.board) < 2):
             raise InputError("board must be [columns, rows] of squares, 2 or more each")
         for label in self.labels:
@@ -111,6 +115,11 @@ class Recipe:
         if self.depth not in DEPTHS:
             raise InputError(f'depth: "{self.depth:.40}" is unknown; expected {", ".join(DEPTHS)}')
         Sensor.load(self.sensor)
+        for lens in self.lenses:
+            if lens != "auto":
+                Lens.load(lens)
+        if not self.lenses:
+            object.__setattr__(self, "lenses", ("auto",) if self.calibration or self.rig else _LENSES)
         self._check_cameras()
 
     def _check_cameras(self) -> None:
@@ -125,8 +134,6 @@ class Recipe:
             if self.film_width_mm or "auto" in self.lenses:
                 raise InputError('film_width_mm and the lens "auto" are for a calibration or rig, and there is none')
             return
-        if self.lenses == _LENSES:
-            object.__setattr__(self, "lenses", ("auto",))
         for name, calibration in self.calibrations.items():
             width, height = calibration.size
             if self.size and abs(self.size[0] * height - self.size[1] * width) > 0.5 * width:
@@ -174,9 +181,12 @@ class Recipe:
         for file in _paths_in(list(values.values())):
             record_input(file)
         cameras = {key: values[key] for key in _CAMERA_KEYS if key in values}
+        checked: dict[str, Any] = {}
         for key, value in (cameras | values).items():
+            if key in _CAMERA_KEYS:  # one after the other, so that an error names the line of the one that is wrong
+                checked[key] = value
             try:
-                cls(**(cameras | {key: value}))
+                cls(**(checked | {key: value}))
             except RealcamError as error:
                 raise InputError(f"{name}:{lines[key]}: {error}") from None
         return cls(**values)
@@ -227,7 +237,7 @@ def _converted(kind: str, name: str, value: Any) -> Any:
         if isinstance(items, list | tuple) and (second == "..." or len(items) == 2):
             return tuple(_converted(element, name, item) for item in items)
     elif kind == "float" and isinstance(value, int | float) and not isinstance(value, bool):
-        if abs(value) < float("inf"):
+        if abs(value) <= sys.float_info.max:
             return float(value)
     elif (kind == "int" and isinstance(value, int) and not isinstance(value, bool)) or (
         kind == "str" and isinstance(value, str)

@@ -151,7 +151,7 @@ def _edge(excess: Callable[[float], float], sharp: float, step: float) -> float:
 
 
 def _real_hyperfocal(lens: Lens, thin: ThinLens, circle: float) -> float:
-    """Returns the nearest focus distance, m, at which infinity is sharp by real rays; nan if there is none."""
+    """Returns the nearest focus of the lens, m, at which infinity is sharp by real rays; nan if there is none."""
 
     def excess(inverse_m: float) -> float:
         try:
@@ -167,10 +167,21 @@ def _real_hyperfocal(lens: Lens, thin: ThinLens, circle: float) -> float:
     low, at_low, high = 0.0, at_infinity, guess
     for _ in range(20):
         at_high = excess(high)
+        if is_beyond := math.isnan(at_high):
+            high = _last_defined(excess, low, high)
+            at_high = excess(high)
         if at_high > 0:
             inverse = root_between(excess, low, high, at_low, at_high, 1e-7 * guess)
             return 1 / inverse if inverse > 0 else math.inf
-        if math.isnan(at_high):
-            return math.nan
+        if is_beyond:
+            return 1 / high if high > 0 else math.nan
         low, at_low, high = high, at_high, 1.5 * high
     return math.nan
+
+
+def _last_defined(function: Callable[[float], float], low: float, high: float) -> float:
+    """Returns the largest number below `high` at which a function is not nan. It is not nan at `low`."""
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if math.isnan(function(middle)) else (middle, high)
+    return low

@@ -142,6 +142,20 @@ def test_colmap_binary(tmp_path: Path) -> None:
         rc.Calibration.load(written(tmp_path, "cameras.bin", content[:-8]))
 
 
+def test_blank_lines_between_images_of_colmap(tmp_path: Path) -> None:
+    """An image without points is followed by an empty line; further blank lines and comments do not count."""
+    images = "# IMAGE_ID ...\n\n1 1 0 0 0 0 0 3 1 a.png\n\n\n# next\n2 1 0 0 0 0 0 4 1 my b.png\n5 6 -1\n\n"
+    written(tmp_path, "images.txt", images)
+    found = rc.Calibration.load(written(tmp_path, "cameras.txt", COLMAP))
+    assert [(name, pose[2, 3]) for name, pose in found.poses.items()] == [("a.png", -3), ("my b.png", -4)]
+    found.save(tmp_path / "cameras.bin")
+    assert list(rc.Calibration.load(tmp_path / "cameras.bin").poses) == ["a.png", "my b.png"]
+    with (tmp_path / "images.bin").open("ab") as file:
+        file.write(b"rest")
+    with pytest.raises(rc.CalibrationFileError, match="bytes for its images"):
+        rc.Calibration.load(tmp_path / "cameras.bin")
+
+
 def test_double_sphere_and_extrinsics_of_kalibr(tmp_path: Path) -> None:
     found = rc.Calibration.load(written(tmp_path, "chain.yaml", KALIBR), "cam1")
     d1 = np.linalg.norm(POINT)

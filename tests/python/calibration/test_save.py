@@ -260,6 +260,12 @@ def test_commands_show_and_convert(tmp_path: Path, capsys: pytest.CaptureFixture
     assert "plumb_bob" in printed and "640 x 480 pixels" in printed
 
 
+def test_names_of_usd_prims_are_unique(tmp_path: Path) -> None:
+    cameras = dict.fromkeys(("a__2", "a-", "a.", "a_", "2"), CAMERAS["pinhole"])
+    rc.Calibration.save_all(tmp_path / "a.usda", cameras)
+    assert len(rc.Calibration.load_all(tmp_path / "a.usda")) == 5
+
+
 def test_binary_usd_files_are_read(tmp_path: Path) -> None:
     """Their attributes are of 32 bits, which move pixels by some 1e-5 of them."""
     sdf = pytest.importorskip("pxr.Sdf")

@@ -125,7 +125,7 @@ def test_a_word_that_is_none_is_told(words: dict[str, Any], sentence: str) -> No
         ({"seed": 1 << 32}, "seed must be a whole number from 0 to 4294967295"),
         ({"threads": -1}, "threads must be a whole number from 0 to 4096"),
         ({"threads": 4097}, "threads must be a whole number from 0 to 4096"),
-        ({"clamp_cd_m2": float("nan")}, "clamp must be 0"),
+        ({"clamp_cd_m2": float("nan")}, "clamp_cd_m2 must be 0"),
         ({"threshold_px": 0}, "must be above 0"),
         ({"effects": "sharpness"}, 'unknown effect "sharpness"'),
         ({"pupil_sampling": "iris"}, 'pupil_sampling must be outline, rear_element, exit_pupil or pixel; it is "iris"'),

@@ -160,6 +160,14 @@ def test_what_is_not_played_is_said(tmp_path: Path) -> None:
     np.testing.assert_array_equal(at(scene, "box", 1), np.eye(4))
 
 
+def test_a_malformed_transform_is_left_out_with_a_warning(tmp_path: Path) -> None:
+    gltf = Gltf()
+    gltf.animate(gltf.node("moving"), "translation", [0, 1], [[0, 0, 0], [1, 0, 0]])
+    for wrong in ({"matrix": [1, 2, 3]}, {"translation": "x"}, {"rotation": [0, 0, 1]}, {"scale": [1, 1, None]}):
+        gltf.node("box", **wrong)
+    assert "4 nodes have a malformed matrix, translation, rotation or scale" in "\n".join(gltf.load(tmp_path).warnings)
+
+
 def rising_wall(tmp_path: Path) -> rc.Scene:
     """A triangle of 40 m in the plane z = -10 that moves to z = -5 from 0 to 4 s, by a morph target."""
     gltf = Gltf()

@@ -67,7 +67,7 @@ def test_wrong_names_and_numbers() -> None:
     with pytest.raises(rc.InputError, match='transport must be paths or whitted; it is "kajiya"'):
         picture(scene, transport="kajiya")
     for clamp in (-1.0, float("nan")):
-        with pytest.raises(rc.InputError, match="clamp must be 0"):
+        with pytest.raises(rc.InputError, match="clamp_cd_m2 must be 0"):
             picture(scene, clamp_cd_m2=clamp)
 
 
@@ -82,5 +82,5 @@ def test_a_shot_file_has_them_too(tmp_path: Path) -> None:
     with pytest.raises(rc.InputError, match=r':5: "transport" must be paths or whitted'):
         rc.Shot.load(tmp_path / "b.toml")
     (tmp_path / "c.toml").write_text(text + "clamp_cd_m2 = -3\n")
-    with pytest.raises(rc.InputError, match=r":5: clamp must be 0"):
+    with pytest.raises(rc.InputError, match=r":5: clamp_cd_m2 must be 0"):
         rc.Shot.load(tmp_path / "c.toml")

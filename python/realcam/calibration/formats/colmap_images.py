@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 
 from ..._core import InputError
@@ -22,6 +23,7 @@ HEADS = {
 _Image = tuple[str, str, list[float]]  # camera, name of the picture, and QW to TZ
 
 
+@lru_cache(maxsize=1)  # each camera of a file asks for its own
 def poses_beside(document: Document) -> Mapping[str, Mapping[str, Array]]:
     """Returns the poses of pictures, camera to world, by camera and name; empty if there is no file of images."""
     path = document.path.with_name(f"images{document.suffix}")
@@ -37,9 +39,11 @@ def poses_beside(document: Document) -> Mapping[str, Mapping[str, Array]]:
 
 
 def _text_images(document: Document) -> Iterator[_Image]:
-    lines = [(i, line) for i, line in enumerate(document.text.splitlines(), 1) if not line.lstrip().startswith("#")]
-    # The line of points after each image may be empty.
-    for i, line in lines[::2]:
+    lines = iter(enumerate(document.text.splitlines(), 1))
+    for i, line in lines:
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        next(lines, None)  # the points of the image, which may be none
         fields = line.split(maxsplit=9)
         if len(fields) < 10:
             document.fail(f"line {i}: expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME")
@@ -59,6 +63,8 @@ def _binary_images(document: Document) -> Iterator[_Image]:
             (points,) = struct.unpack_from("<Q", content, end + 1)
             position = end + 9 + 24 * points
             yield str(camera), name, Entries(document, {"pose": pose}, f"{name:.60}: ").numbers("pose", 7)
+        if position != len(content):
+            document.fail(f"expected {position} bytes for its images; it has {len(content)}")
     except (struct.error, ValueError):
         document.fail(f"ends before its last image, at byte {len(content)}")
 
@@ -75,12 +81,14 @@ def pose_text(camera_from_world: Array) -> str:
 
 def image_text(number: int, camera_from_world: Array, camera: int, name: str) -> str:
     """Returns the line of an image and an empty line of its points. Raises InputError for names with spaces."""
+    if any(c.isspace() for c in name):
+        raise InputError(f"names in COLMAP's text files must not contain spaces; one is {name!r:.60}")
     return f"{number} {pose_text(camera_from_world)} {camera} {_checked(name)}\n"
 
 
 def _checked(name: str) -> str:
-    if not name or any(c.isspace() or c == "\0" for c in name):
-        raise InputError(f"names in COLMAP's files must not be empty or contain spaces; one is {name!r:.60}")
+    if not name or "\0" in name:
+        raise InputError(f"names in COLMAP's files must not be empty or contain NUL; one is {name!r:.60}")
     return name
 
 

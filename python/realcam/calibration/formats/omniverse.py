@@ -28,6 +28,11 @@ from .usd_text import camera_prims
 
 PREFIX = "omni:lensdistortion:"
 PINHOLE_KEYS = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4")
+KEYS = {
+    *("fx", "fy", "cx", "cy", "imageSize", *PINHOLE_KEYS),
+    *("k0", "maxFov", "opticalCenter", "nominalWidth", "nominalHeight"),
+    *("rayEnterDirectionTexture", "rayExitPositionTexture"),
+}
 Read = Callable[[Entries], tuple[CameraModel, tuple[int, int]]]
 
 
@@ -78,6 +83,7 @@ def _camera(document: Document, name: str, values: dict[str, object]) -> StatedC
     prefix = f"{PREFIX}{model}:"
     own = {key.removeprefix(prefix): value for key, value in values.items() if key.startswith(prefix)}
     camera_model, size = MODELS[model](Entries(document, own, f"{name}.{prefix}"))
+    own = {key: value for key, value in own.items() if key in KEYS}
     return StatedCamera(camera_model, size, model, name=name, format="omniverse", file_values={"model": model, **own})
 
 
@@ -169,7 +175,8 @@ def _prim_names(names: Sequence[str]) -> list[str]:
     for name in names:
         word = "".join(c if c.isascii() and (c.isalnum() or c == "_") else "_" for c in name) or "Camera"
         word = word if not word[0].isdigit() else f"Camera_{word}"
-        found.append(word if word not in found else f"{word}_{len(found)}")
+        candidates = (word, *(f"{word}_{i}" for i in range(len(found) + 1)))
+        found.append(next(candidate for candidate in candidates if candidate not in found))
     return found
 
 

@@ -3,7 +3,9 @@
 import { streamAt } from "/realcam/stream.js";
 
 // Colours that are visible on a light page and a dark one.
-const COLOURS = ["#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a", "#5b8f9e", "#e0709a", "#a0642d", "#8f8f8f"];
+const COLOURS = ["#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a", "#5b8f9e", "#e0709a", "#a0642d", "#8f8f8f", "#3fae9c", "#c05ac8"];
+/// Text of a number with two digits at least, without an exponent: 0.012, 1.5, 108.
+const short = (x) => String(x < 100 ? Number(x.toPrecision(2)) : Math.round(x));
 const W = 300, H = 120, LEFT = 34, BOTTOM = 20; // size of the diagram, and its margins for labels
 
 export default {
@@ -31,17 +33,17 @@ export default {
     <p class="rc-note">{{ barText }}. {{ large(costs.samples_per_s) }} samples/s, {{ large(costs.rays_per_s) }} rays/s;
       {{ (100 * costs.passing_share).toFixed(1) }}% of the rays into the lens pass it.</p>
   </template>
-  <svg class="rc-noise" viewBox="0 0 ${W} ${H}" role="img" aria-label="Noise in grey levels of 255 over time, both logarithmic">
+  <svg class="rc-noise" viewBox="0 0 ${W} ${H}" role="img" aria-label="Noise of this picture, and errors of the levels of simulation, in grey levels of 255 over time, both logarithmic">
     <line x1="${LEFT}" y1="${H - BOTTOM}" x2="${W}" y2="${H - BOTTOM}" /><line x1="${LEFT}" y1="0" x2="${LEFT}" y2="${H - BOTTOM}" />
     <text x="${(W + LEFT) / 2}" y="${H - 4}" text-anchor="middle">time (s), {{ range[0] }} to {{ range[1] }}</text>
-    <text x="10" y="${(H - BOTTOM) / 2}" text-anchor="middle" transform="rotate(-90 10 ${(H - BOTTOM) / 2})">noise (levels)</text>
+    <text x="10" y="${(H - BOTTOM) / 2}" text-anchor="middle" transform="rotate(-90 10 ${(H - BOTTOM) / 2})">error (levels)</text>
     <text x="${LEFT - 3}" y="9" text-anchor="end">{{ top }}</text><text x="${LEFT - 3}" y="${H - BOTTOM}" text-anchor="end">{{ bottom }}</text>
     <polyline class="rc-curve" :points="curve" />
     <g v-for="(level, k) in plottedLevels" :key="level.name" class="rc-level" :style="{ color: colour(k) }">
       <title>{{ level.name }}</title><polyline :points="level.line" /><circle v-for="(p, j) in level.points" :key="j" :cx="p[0]" :cy="p[1]" r="2.5" /></g>
   </svg>
   <button type="button" @click="stream.send({ type: 'levels' })"
-    title="Renders this shot at every level of simulation, at a low resolution, and shows noise over time of each">Measure the levels of simulation</button>
+    title="Renders this shot at every level of simulation, at a low resolution, and shows the error over time of each">Measure the levels of simulation</button>
   <p v-if="levelsNote" class="rc-note" data-testid="levels-note">{{ levelsNote }}</p>
   <ul class="rc-legend"><li v-for="(level, k) in levels" :key="level.name"><span :style="{ background: colour(k) }"></span>{{ level.name }}</li></ul>
 </section>`,
@@ -66,9 +68,9 @@ export default {
       const t = all.map((p) => p[0]), n = all.map((p) => p[1]);
       return [Math.min(...t) / 1.2, Math.max(...t) * 1.2, Math.min(...n) / 1.3, Math.max(...n) * 1.3];
     },
-    range() { return this.limits.slice(0, 2).map((x) => x.toPrecision(2)); },
-    bottom() { return this.limits[2].toPrecision(2); },
-    top() { return this.limits[3].toPrecision(2); },
+    range() { return this.limits.slice(0, 2).map(short); },
+    bottom() { return short(this.limits[2]); },
+    top() { return short(this.limits[3]); },
     curve() {
       return this.points.map(([t, n]) => this.positionOf(t, n).join(",")).join(" ");
     },
@@ -119,10 +121,10 @@ export default {
     label_of: (name) => name[0].toUpperCase() + name.slice(1).replaceAll("_", " "),
     /// Sentence about the size of an effect in this picture.
     size(name) {
-      const row = this.rows[name], short = (x) => (x === Infinity ? "∞" : String(Number(x.toPrecision(2))));
+      const row = this.rows[name], digits = (x) => (x === Infinity ? "∞" : String(Number(x.toPrecision(2))));
       if (!row) return "";
-      const unit = row.unit === "px" ? "pixel" : "grey level", size = short(row.size);
-      const limit = `below ${short(row.threshold)} it would be invisible`;
+      const unit = row.unit === "px" ? "pixel" : "grey level", size = digits(row.size);
+      const limit = `below ${digits(row.threshold)} it would be invisible`;
       const why = !row.is_kept && row.size > row.threshold ? ". It is off nevertheless, for the reason shown with the effect." : `; ${limit}.`;
       return `It changes this picture by ${size} ${unit}${size === "1" ? "" : "s"}${why}`;
     },
@@ -131,6 +133,6 @@ export default {
       this.stream.send({ type: "switch", effect, state });
     },
     /// Text of a large number with a prefix.
-    large: (x) => (x >= 1e9 ? `${(x / 1e9).toPrecision(3)} G` : x >= 1e6 ? `${(x / 1e6).toPrecision(3)} M` : `${(x / 1e3).toPrecision(3)} k`),
+    large: (x) => (x >= 999.5e6 ? `${(x / 1e9).toPrecision(3)} G` : x >= 999.5e3 ? `${(x / 1e6).toPrecision(3)} M` : `${(x / 1e3).toPrecision(3)} k`),
   },
 };
