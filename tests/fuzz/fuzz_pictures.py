@@ -35,6 +35,8 @@ KINDS = (
     ("tif", 1, "uint16", "none", False),
     ("bmp", 3, "uint8", "", False),
     ("tga", 4, "uint8", "rle", False),
+    ("webp", 3, "uint8", "webp:90", False),
+    ("webp", 4, "uint8", "lossless", False),
 )
 Picture = tuple[str, bytes]  # suffix and contents
 

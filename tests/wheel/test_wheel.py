@@ -56,6 +56,11 @@ def needed(library: elffile.ELFFile) -> set[str]:
     return {tag.needed for tag in dynamic.iter_tags("DT_NEEDED")}
 
 
+def plain_name(file: str) -> str:
+    """Name of a library without auditwheel's hash and its version: libdraco of realcam.libs/libdraco-0a1b2c3d.so.7."""
+    return re.sub(r"(-[0-9a-f]{8})?\.so.*", "", Path(file).name)
+
+
 def test_its_name_says_where_it_runs() -> None:
     assert WHEEL.name.endswith("-manylinux_2_34_x86_64.whl")
     assert WHEEL.stat().st_size <= 30e6
@@ -91,7 +96,7 @@ def test_every_library_inside_has_a_licence_that_allows_it() -> None:
     for name in LIBRARIES:
         if name == EXTENSION:
             continue
-        library = re.sub(r"(-[0-9a-f]{8})?\.so.*", "", Path(name).name)
+        library = plain_name(name)
         assert library in LICENCES, f"{library} is new: which licence has it?"
         texts = [file for file in FILES.namelist() if f".dist-info/licenses/{library}/" in file]
         assert texts, f"{library}: its licence is not in the wheel"
@@ -106,3 +111,8 @@ def test_what_realcam_demo_wants_is_inside() -> None:
     assert {"realcam/scenes/demo.glb", "realcam/scenes/demo.toml", "realcam/_core.pyi", "realcam/py.typed"} <= set(
         FILES.namelist()
     )
+
+
+def test_compressed_meshes_can_be_read() -> None:
+    """Without these libraries CMake builds a wheel all the same, which then refuses such files."""
+    assert {"libdraco", "libmeshoptimizer"} <= {plain_name(name) for name in LIBRARIES}

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import base64
 import importlib.util
+import json
+import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -118,3 +122,56 @@ def test_film_goes_from_the_lamps_to_the_chessmen() -> None:
     assert (begin.focus_distance_m, end.focus_distance_m) == pytest.approx((3.5, 2.0))
     assert end.focused(float("inf")).first_order().effective_focal_length_mm == pytest.approx(135)
     assert shot.shake is not None
+
+
+GALLERY = EXAMPLES / "gallery"
+
+
+def stand_in(file: Path) -> None:
+    """Writes a small file of the same format in place of one that the gallery's page tells how to get."""
+    oiio = pytest.importorskip("OpenImageIO")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    if file.suffix == ".usd":
+        file.write_text('#usda 1.0\n(metersPerUnit = 1)\ndef Cube "Box" {\n double size = 0.05\n}\n')
+    elif file.suffix == ".gltf":
+        triangle = base64.b64encode(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], "<f4").tobytes()).decode()
+        attributes = {"type": "VEC3", "componentType": 5126, "count": 3, "min": [0, 0, 0], "max": [1, 1, 0]}
+        model = {
+            "asset": {"version": "2.0"},
+            "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "accessors": [{"bufferView": 0, **attributes}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "buffers": [{"byteLength": 36, "uri": f"data:application/octet-stream;base64,{triangle}"}],
+        }
+        file.write_text(json.dumps(model))
+    elif file.suffix == ".glb":
+        shutil.copy(EXAMPLES.parent / "scenes" / "demo.glb", file)
+    else:
+        picture = oiio.ImageBuf(oiio.ImageSpec(4, 2, 3, "half" if file.suffix == ".exr" else "uint8"))
+        oiio.ImageBufAlgo.fill(picture, (0.5, 0.5, 0.5))
+        assert picture.write(str(file))
+
+
+@pytest.mark.picture_files
+@pytest.mark.parametrize("shot", sorted(GALLERY.glob("*.toml")), ids=lambda shot: shot.stem)
+def test_shots_of_the_gallery_can_be_taken(shot: Path, tmp_path: Path) -> None:
+    text = shot.read_text(encoding="utf-8")
+    for package in ["pxr"] * (".usd" in text) + ["PyOpenColorIO"] * ("ocio" in text):
+        pytest.importorskip(package)
+    folder = shutil.copytree(GALLERY, tmp_path / "gallery", ignore=shutil.ignore_patterns("assets"))
+    for name in re.findall(r'"(assets/[^"]+)"', text):
+        stand_in(folder / name)
+    image = rc.Shot.load(folder / shot.name, resolution=(12, 8), spp=1, device="cpu").render()
+    assert np.isfinite(image.pixels).all() and image.pixels.max() > 0
+
+
+def test_the_gallery_shows_each_of_its_shots() -> None:
+    page = (EXAMPLES.parent / "docs" / "gallery.md").read_text(encoding="utf-8")
+    names = [shot.stem for shot in GALLERY.glob("*.toml")]
+    assert len(names) == 6
+    for name in names:
+        assert f"realcam render examples/gallery/{name}.toml -o {name}.jpg --denoise" in page
+        assert f"](images/gallery-{name}.jpg)" in page
+        assert (EXAMPLES.parent / "docs" / "images" / f"gallery-{name}.jpg").stat().st_size < 150_000
