@@ -1,4 +1,7 @@
-"""Case C: closed forms that a lens must obey, through the Python API."""
+"""Case C: closed forms that a lens must obey, through the Python API.
+
+tests/cpp/optics/trace/test_perfect_surfaces.cpp has surfaces that image a point perfectly.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,6 @@ import pytest
 import realcam as rc
 
 from ..centred_lenses import CENTRED
-from .perfect_lenses import ellipsoid, folded_paraboloid, thin_lens, thin_lens_aberration
 
 LENSES = CENTRED
 Trace = Callable[..., rc.TraceResult]
@@ -25,12 +27,6 @@ def parallel(heights: np.ndarray, z: float = -10.0) -> tuple[np.ndarray, np.ndar
     azimuth = 2.4 * np.arange(len(heights))
     origins = np.stack([heights * np.cos(azimuth), heights * np.sin(azimuth), np.full_like(heights, z)], axis=1)
     return origins, np.tile([0.0, 0.0, 1.0], (len(heights), 1))
-
-
-def miss(rays: rc.TraceResult, z: float) -> np.ndarray:
-    """How far the rays, as straight lines, pass from a point of the axis."""
-    assert (rays.status == rc.RayStatus.OK).all()
-    return np.linalg.norm(np.cross(np.array([0, 0, z]) - rays.origins_mm, rays.directions), axis=1)
 
 
 @pytest.mark.parametrize(
@@ -63,65 +59,6 @@ def test_thick_lens(r1: float, r2: float, d: float, n: float, trace: Trace) -> N
     crossing = out.origins_mm[0, 2] + reach - lens.vertices_mm[-1]
     # Third order: (1e-4 / 25)^2, and the rounding of the slope of 1e-6.
     assert crossing == pytest.approx(first.back_focal_distance_mm, rel=1e-8)
-
-
-@pytest.mark.parametrize("n", [1.3, 1.5168, 2.0])
-@pytest.mark.parametrize("radius", [2.0, 30.0])
-def test_aplanatic_points_of_a_sphere(n: float, radius: float, trace: Trace) -> None:
-    """Rays in air that aim at R n behind the centre meet at R / n behind it, in the glass: all of them."""
-    sphere = rc.Surface(radius_of_curvature_mm=radius, material=n, clear_semi_diameter_mm=0.999 * radius)
-    lens = rc.Lens(surfaces=[stop(10 * radius), sphere], film_distance_mm=1.0, allow_overlap=True)
-    aim, image = radius * (1 + n), radius * (1 + 1 / n)
-    heights = 0.98 * radius * np.linspace(0.05, 1, 40)
-    on_sphere, _ = parallel(heights)
-    on_sphere[:, 2] = radius - np.sqrt(radius**2 - heights**2)
-    directions = np.array([0, 0, aim]) - on_sphere
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    out = trace(lens, on_sphere - radius * directions, directions, start="scene")
-    assert miss(out, image).max() < 1e-9 * radius
-    # Abbe's sine condition, which makes them aplanatic: sin u / sin u' = 1 / n for all.
-    sines = [np.hypot(d[:, 0], d[:, 1]) for d in (directions, out.directions)]
-    np.testing.assert_allclose(sines[1], n * sines[0], rtol=1e-9)
-
-
-@pytest.mark.parametrize("n", [1.4, 1.5168, 1.9])
-def test_ellipsoid_images_infinity_perfectly_into_glass(n: float, trace: Trace) -> None:
-    lens = ellipsoid(n)
-    focus = lens.film_position_mm
-    out = trace(lens, *parallel(np.linspace(0.5, 28.9, 50)), start="scene")
-    assert miss(out, focus).max() < 1e-9
-    # Equal optical paths to the focus: Fermat's principle.
-    left = n * np.linalg.norm(np.array([0, 0, focus]) - out.origins_mm, axis=1)
-    assert np.ptp(out.optical_path_mm + left) < 1e-9
-
-
-def test_paraboloid_mirror_images_infinity_on_its_focus(trace: Trace) -> None:
-    lens = folded_paraboloid()
-    out = trace(lens, *parallel(np.linspace(0.5, 79, 50)), start="scene")
-    assert lens.film_position_mm == pytest.approx(70)
-    assert miss(out, 70.0).max() < 1e-9
-    assert abs(lens.first_order().effective_focal_length_mm) == pytest.approx(100, rel=1e-12)
-    # A sphere of the same radius misses it by h^3 / (2 R^2) and more.
-    worse = trace(lens.with_surface(1, conic=0), *parallel(np.array([40.0])), start="scene")
-    assert miss(worse, 70.0)[0] == pytest.approx(40**3 / (2 * 200**2), rel=0.1)
-
-
-def third_order(lens: rc.Lens, trace: Trace) -> float:
-    """(1 / s' at height h less 1 / f) / h^2 of real rays, extrapolated to the axis."""
-    heights = np.linspace(0.5, 2, 7)
-    out = trace(lens, *parallel(heights), start="scene")
-    radial = np.hypot(out.origins_mm[:, 0], out.origins_mm[:, 1])
-    inward = np.hypot(out.directions[:, 0], out.directions[:, 1])
-    crossing = out.origins_mm[:, 2] + radial / inward * out.directions[:, 2]
-    values = (1 / crossing - 1 / lens.first_order().effective_focal_length_mm) / heights**2
-    return float(np.polyfit(heights**2, values, 2)[-1])
-
-
-@pytest.mark.parametrize("n", [1.5, 1.8])
-@pytest.mark.parametrize("shape", [-2.0, -1.0, 0.0, 0.5, 1.0, 2.0])
-def test_spherical_aberration_of_a_thin_lens_against_its_bending(shape: float, n: float, trace: Trace) -> None:
-    # The fit leaves out the eighth order in h / f = 0.02.
-    assert third_order(thin_lens(shape, n), trace) == pytest.approx(thin_lens_aberration(shape, n), rel=1e-4)
 
 
 @pytest.mark.parametrize("name", LENSES)
