@@ -36,40 +36,7 @@ Vec3d at_plane(const LensFrameRay& ray, double distance) {
     return o + ((-distance - o.z) / d.z) * d;
 }
 
-// Biconvex, 1/f = 1/100, so thin that its pupils and principal planes lie together.
-LensSystem thin_lens(double stop_radius) {
-    return lens_of({stop_plane(0, stop_radius), refracting(100, 1e-4, Glass::constant(1.5), 20),
-                    refracting(-100, 0, Glass::air(), 20)});
-}
-
 }  // namespace
-
-TEST_CASE("the circle of confusion of the thin lens is A f |d - s| / (d (s - f))") {
-    const double f = 100, aperture = 20;
-    for (const double s : {500.0, 2000.0})
-        for (const double d : {250.0, 480.0, 1000.0, 20000.0}) {
-            LensSystem lens = thin_lens(0.5 * aperture);
-            lens.film_distance = f * s / (s - f);
-            lens.focus_distance = s + lens.film_distance;
-            const CameraSetup setup(camera_with(lens, CameraModel::thin_lens));
-            const CameraView view = setup.view({0, 0, 0});
-            // Film points whose rays through the pupil's two edges meet the axis at d: the offset there is
-            // linear in the film point.
-            double edge[2];
-            for (int side = 0; side < 2; ++side) {
-                const auto offset = [&](float x) {
-                    return at_plane(thin_lens_ray(view, {x, 0}, {0.5f * static_cast<float>(side), 1},
-                                                  view.thin.pupil_radius),
-                                    d)
-                        .x;
-                };
-                edge[side] = offset(0) / (offset(0) - offset(1));
-            }
-            const double diameter = aperture * f * std::fabs(d - s) / (d * (s - f));
-            // Single precision, where d is near s: 1e-6 of the pupil's image on the film.
-            CHECK(std::fabs(std::fabs(edge[0] - edge[1]) - diameter) < 1e-4 * diameter + 2e-5);
-        }
-}
 
 TEST_CASE("ideal models bring all rays of a film point together in the plane of focus") {
     for (const std::string& name : centred_lens_names()) {

@@ -150,29 +150,6 @@ TEST_CASE("every moved element leaves what is in its place in place") {
     }
 }
 
-TEST_CASE("light that goes back through tilted surfaces comes back to where it was") {
-    LensSystem lens =
-        lens_of({refracting(50, 4, Glass::constant(1.6), 15), refracting(-80, 6, Glass::air(), 15), stop_plane(3, 8),
-                 refracting(-40, 2, Glass::constant(1.7), 12), refracting(60, 0, Glass::air(), 12)});
-    lens = with_element_tilted(lens, 0, 1, {{0.5, -0.3, 0.2}, {4, 6, 20}, false});
-    lens = with_element_tilted(lens, 3, 4, {{-0.4, 0.1, 0}, {-8, 3, 0}, false});
-    const RayTracer to_film(lens, LightDirection::to_film), to_scene(lens, LightDirection::to_scene);
-    Random random(1);
-    int passed = 0;
-    for (int i = 0; i < 200; ++i) {
-        const Vec3d from{16 * random() - 8, 16 * random() - 8, -10};
-        const Vec3d towards = normalized(Vec3d{random() - 0.5, random() - 0.5, 4});
-        const TracedRay there = to_film(from, towards);
-        if (!there.passed()) continue;
-        const TracedRay back = to_scene(there.at(there.origin.z + 5), -there.direction);
-        REQUIRE(back.passed());
-        ++passed;
-        CHECK(length(back.at(-10) - from) < 1e-10);
-        CHECK(length(back.direction + towards) < 1e-12);
-    }
-    CHECK(passed > 100);
-}
-
 TEST_CASE("rays enter and leave in the frames that are asked for") {
     LensSystem lens = lens_of({placed(refracting(50, 4, Glass::constant(1.6), 15), {1, 2, 0}, {10, 20, 0}),
                                refracting(-80, 0, Glass::air(), 15), stop_plane(3, 20)});
