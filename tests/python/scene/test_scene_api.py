@@ -148,28 +148,6 @@ def test_an_obj_from_any_kind_of_path_and_in_other_units(tmp_path: Path) -> None
             rc.Scene.load(path, scale=wrong)
 
 
-def test_scene_files_that_cannot_be_read(tmp_path: Path) -> None:
-    with pytest.raises(rc.SceneFileError, match=r"nowhere\.obj"):
-        rc.Scene.load(tmp_path / "nowhere.obj")
-    other = tmp_path / "scene.blend"
-    other.write_text("")
-    with pytest.raises(rc.SceneFileError, match=r"\.glb, \.gltf, \.obj, \.ply, "):
-        rc.Scene.load(other)
-    for text in (
-        "",
-        "v 0 0 0\n",
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n",
-        "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
-    ):
-        bad = tmp_path / "bad.obj"
-        bad.write_text(text)
-        with pytest.raises(rc.SceneFileError, match=r"bad\.obj") as caught:
-            rc.Scene.load(bad)
-        assert "\n" not in str(caught.value)
-    with pytest.raises(TypeError):
-        rc.Scene.load(5)  # type: ignore[arg-type]
-
-
 def test_a_missing_texture_is_a_warning_and_seen(tmp_path: Path) -> None:
     path = write_obj(tmp_path)
     (tmp_path / "wall.mtl").write_text("newmtl red\nKd 0.8 0.8 0.8\nmap_Kd nowhere.png\n")
