@@ -1,12 +1,6 @@
-"""Independent optics for the tests: paraxial matrices, marginal rays, the exposure integral by force.
-
-Only Lens.trace is taken from realcam, and only where real rays are needed; tests/truth proves it against the
-listing of another program.
-"""
+"""Independent optics for the tests: paraxial matrices."""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 import realcam as rc
@@ -69,39 +63,3 @@ class Paraxial:
         """Circle of confusion on the film: the cone from the exit pupil to the image, cut by the film."""
         image = self.image(film_to_object_mm)
         return self.exit_pupil_diameter * abs((self.film - image) / (image - self.exit_pupil))
-
-
-def passes(lens: rc.Lens, film_points_mm: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """Which rays from points (N, 3) on the film reach the scene, in double precision."""
-    rays = lens.trace(film_points_mm, directions, start="film", dtype="float64")
-    return rays.status == int(rc.RayStatus.OK)
-
-
-def _axial_passes(lens: rc.Lens, sines: np.ndarray) -> np.ndarray:
-    directions = np.stack([sines, np.zeros_like(sines), -np.sqrt(1 - sines**2)], axis=1)
-    return passes(lens, np.tile([0.0, 0.0, lens.film_position_mm], (len(sines), 1)), directions)
-
-
-def marginal_sines(lens: rc.Lens) -> list[float]:
-    """Sines of the angles at which rays from the film's middle begin or cease to pass, ascending.
-
-    One for an ordinary lens; two for a mirror lens, whose centre is dark.
-    """
-    grid = np.linspace(0.0, 0.9, 4001)
-    inside = _axial_passes(lens, grid)
-    edges = []
-    for i in np.flatnonzero(inside[1:] != inside[:-1]):
-        low, high = grid[i], grid[i + 1]
-        for _ in range(40):
-            middle = 0.5 * (low + high)
-            same = bool(_axial_passes(lens, np.array([middle]))[0]) == bool(inside[i])
-            low, high = (middle, high) if same else (low, middle)
-        edges.append(0.5 * (low + high))
-    return edges
-
-
-def axial_irradiance(lens: rc.Lens) -> float:
-    """pi sin^2(theta') in the film's middle, in a field of radiance 1, less a mirror lens's dark centre."""
-    squares = [s * s for s in marginal_sines(lens)]
-    assert len(squares) in (1, 2)
-    return math.pi * (squares[0] if len(squares) == 1 else squares[1] - squares[0])

@@ -1,4 +1,4 @@
-"""Light on the film against closed forms and against the exposure integral summed by force."""
+"""Exposure of ideal models and of grey cards against closed forms. Light through lenses: test_estimator_lens.cpp."""
 
 from __future__ import annotations
 
@@ -8,31 +8,7 @@ import numpy as np
 import pytest
 import realcam as rc
 
-from ...centred_lenses import CENTRED
-from .. import scenes, yardsticks
-
-
-def axial_exposure(lens: rc.Lens, *, model: str = "full", time_s: float = 1.0, spp: int = 4096) -> float:
-    """Mean exposure of 4 x 4 pixels of 5 um in the middle of the film, in a field of radiance 1."""
-    film = rc.Film(0.02, 0.02, (4, 4))
-    camera = rc.Camera(lens, film=film, exposure_time_s=time_s, model=model)
-    return float(rc.render(scenes.sky(), camera, effects=(), spp=spp).pixels.mean(dtype=np.float64))
-
-
-@pytest.mark.parametrize("name", CENTRED)
-def test_constant_field_gives_pi_sin_squared_on_the_axis(name: str) -> None:
-    lens = rc.Lens.load(name)
-    # At least 98% of the samples pass, all with the same weight, so that one standard deviation of the mean
-    # of 65536 samples is sqrt(0.02 / 65536) = 0.06%; four of them are half of what is allowed. 5 um pixels
-    # are 0.007 of the shortest distance to an exit pupil, whose cos^4 changes by 1e-4 over them.
-    assert axial_exposure(lens) == pytest.approx(yardsticks.axial_irradiance(lens), rel=0.005)
-
-
-@pytest.mark.parametrize("name", ["double-gauss-50mm", "fisheye-10mm", "telephoto-200mm-inner-focus"])
-@pytest.mark.parametrize("f_number", [5.6, 22.0])
-def test_constant_field_when_focused_near_and_stopped_down(name: str, f_number: float) -> None:
-    lens = rc.Lens.load(name).focused(3.0).stopped_down(f_number)
-    assert axial_exposure(lens) == pytest.approx(yardsticks.axial_irradiance(lens), rel=0.005)
+from .. import scenes
 
 
 def test_relative_illumination_of_ideal_models_is_cos_to_the_fourth() -> None:

@@ -47,15 +47,6 @@ def test_errors_are_value_errors_of_realcam() -> None:
     assert issubclass(rc.InputError, rc.RealcamError)
 
 
-def test_unknown_lens_names_the_nearest() -> None:
-    with pytest.raises(rc.LensFileError, match=r'"double-gaus".*double-gauss-50mm'):
-        rc.Lens.load("double-gaus")
-    with pytest.raises(rc.LensFileError, match=r"/nowhere/lens\.toml"):
-        rc.Lens.load(Path("/nowhere/lens.toml"))
-    with pytest.raises(TypeError):
-        rc.Lens.load(5)  # type: ignore[arg-type]
-
-
 def test_a_name_with_a_point_is_a_file_where_there_is_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(rc.LensFileError, match=r'unknown lens "tesar-50mm\.5" \(did you mean "tessar-50mm"'):

@@ -64,14 +64,6 @@ def test_load_and_its_errors(seq):
     assert np.abs(lens.surfaces[lens.stop_index].tilt_deg) == pytest.approx((3, 0, 0))
 
 
-@pytest.mark.parametrize("name", ["tessar-50mm", "telephoto-200mm-inner-focus", "zoom-70-200mm", "view-camera-210mm"])
-def test_a_lens_whose_rings_are_turned_is_the_same_after_it_is_saved(name, tmp_path):
-    lens = rc.Lens.load(name)
-    lens = lens.with_iris(7, 0.25, 11).stopped_down(1.5 * lens.first_order().f_number).focused(5)
-    lens.save(tmp_path / "mine.toml")
-    assert rc.Lens.load(tmp_path / "mine.toml") == lens
-
-
 def test_save_of_a_made_lens(tmp_path):
     glass = rc.Glass.sellmeier([1.04, 0.23], [0.006, 0.02])
     coating = rc.Coating([rc.CoatingLayer(1.38, thickness_waves=0.25, design_wavelength_nm=550)])

@@ -199,21 +199,3 @@ def test_layers_and_progress_go_along(device: str) -> None:
     goal = {"spp": "auto", "noise": 1e-9, "max_spp": 2**24, "seconds": 30}
     with pytest.raises(rc.Cancelled):
         rc.render(half_noisy(), camera(), effects=(), progress=lambda _: False, device=device, **goal)
-
-
-@pytest.mark.parametrize(
-    ("settings", "message"),
-    [
-        ({"spp": 8, "noise": 0.1}, 'noise, noise_codes, seconds and max_spp need spp "auto"'),
-        ({"spp": "all"}, 'spp must be a whole number or "auto"'),
-        ({"noise": float("nan")}, "noise must be at least 1e-9"),
-        ({"noise": 1e-300}, "noise must be"),
-        ({"noise_codes": float("inf")}, "noise_codes must be"),
-        ({"noise": 0.1, "noise_codes": 1}, "exclude each other"),
-        ({"seconds": 0}, "seconds must be above 0"),
-        ({"max_spp": 1}, "max_spp must be a whole number from 2 to"),
-    ],
-)
-def test_goals_that_are_none_are_refused(settings: dict[str, object], message: str) -> None:
-    with pytest.raises(rc.InputError, match=message):
-        rc.render(half_noisy(), camera(), effects=(), **{"spp": "auto", **settings})
