@@ -215,46 +215,6 @@ TEST_CASE("translation of a camera in front of a plane whose radiance is a linea
     CHECK(errors_between(found.both[kUp], zero) < kErrors);
 }
 
-TEST_CASE("exposure on the axis by the radius of the diaphragm") {
-    // E = pi L s^2, with the sine s of the angle at the film of the ray through the stop's rim.
-    Camera camera = corner_camera(4);
-    camera.lens.iris = {};
-    camera.film = {0.02, 0.02, 2, 2, {0, 0}};
-    const LensSystem& lens = camera.lens;
-    const auto sine_at = [&](double radius) {
-        // The ray's height at the stop grows with the sine.
-        const LensPath<double> path(lens, LightDirection::to_scene, lens.wavelength_nm);
-        LensView<double> view = path.view();
-        view.count -= lens.stop_index();
-        double low = 0, high = 0.5;
-        for (int halving = 0; halving < 50; ++halving) {
-            const double sine = 0.5 * (low + high);
-            LensRays<double, 1> ray;
-            ray.origin.set(0, {0, 0, lens.film_distance});
-            ray.direction.set(0, {sine, 0, -std::sqrt(1 - sine * sine)});
-            ray.status[0] = 0;
-            trace_lens(view, ray);
-            const bool inside = ray.status[0] == 0 && std::fabs(ray.origin.x[0]) < radius;
-            (inside ? low : high) = sine;
-        }
-        return low;
-    };
-    const double radius = lens.stop_semi_diameter, step = 1e-3 * radius;
-    const auto exposure = [&](double at) { return std::numbers::pi * sine_at(at) * sine_at(at); };
-    // Radii below the stop's: rays at larger ones end there.
-    const double truth = (exposure(radius - 1e-9) - exposure(radius - 2 * step)) / (2 * step);
-    const double curvature =
-        (exposure(radius - 1e-9) - 2 * exposure(radius - step) + exposure(radius - 2 * step)) / (step * step);
-    const double wanted = truth + curvature * step;  // at the radius itself, to second order
-    PictureGradient gradient(even_light(), camera, direct_light(), PixelFilter::tent, {});
-    const std::vector<float> adjoint(12, 1.0f / 12);
-    const Gradients found(gradient, adjoint, 16, 64);
-    // The pupil of the points beside the axis, 20 um away, has the same area to 1e-6, and differences to 1e-5.
-    CHECK(std::fabs(found.both[kStop].value - wanted) < kErrors * found.both[kStop].error + 1e-5 * wanted);
-    CHECK(found.both[kStop].error < 0.01 * wanted);
-    CHECK(found.interior[kStop].value == 0);
-}
-
 TEST_CASE("a knife edge in front of a thin lens, by pose, focus and stop") {
     // A lens of focal length f, thickness of 10 um and f/50, so that its aberrations and the cosines change the light
     // by 2e-4. A ray from the film point x through the point u of the lens meets the edge's plane, at the distance D,

@@ -162,26 +162,6 @@ def test_values_are_those_of_the_analyses() -> None:
         assert lens.gradient(quantity, some).value == pytest.approx(getattr(data, quantity), rel=1e-12)
 
 
-def test_a_tilted_surface_of_a_centred_lens_throws_light_aside_as_a_prism_does() -> None:
-    """A thin plate of angle a deviates by (n - 1) a; a tilted face of a plane-parallel plate is such a wedge."""
-    plate = rc.Lens(
-        surfaces=[
-            rc.Stop(clear_semi_diameter_mm=5),
-            rc.Surface(material=1.5, thickness_mm=1e-6, clear_semi_diameter_mm=8),
-            rc.Surface(clear_semi_diameter_mm=8),
-        ],
-        film_distance_mm=10,
-        allow_overlap=True,
-    )
-    found = rc.ray_derivatives(
-        plate, [[0, 0, -1.0]], [[0, 0, 1.0]], [rc.Variable.tilt(1, "x"), rc.Variable.tilt(2, "y")], start="scene"
-    )
-    degree = np.pi / 180
-    # About x the normal turns to -y: glass is thicker below or above, and light goes there. Signs by Snell's law.
-    assert abs(found.directions_by[0, 1, 0]) == pytest.approx(0.5 * degree, rel=1e-12)
-    assert abs(found.directions_by[0, 0, 1]) == pytest.approx(0.5 * degree, rel=1e-12)
-
-
 def test_rays_keep_their_length_and_say_where_they_end() -> None:
     lens = singlet()
     origins = [[0, 1.0, -5], [0, 30.0, -5], [1, -2.0, -400]]

@@ -55,21 +55,11 @@ std::string with_line(int number, const std::string& replacement) {
 
 // Message of the error for a text, or "(no error)".
 std::string complaint(const std::string& text) {
-    try {
-        io::parse_lens(text, "probe.toml");
-    } catch (const LensFileError& error) {
-        return error.what();
-    }
-    return "(no error)";
+    return message_of<LensFileError>([&] { io::parse_lens(text, "probe.toml"); });
 }
 
 std::string complaint_about_name(const std::string& name) {
-    try {
-        io::read_lens(name);
-    } catch (const LensFileError& error) {
-        return error.what();
-    }
-    return "(no error)";
+    return message_of<LensFileError>([&] { io::read_lens(name); });
 }
 
 // Checks that the message is one line, begins with `place` and contains `part`.

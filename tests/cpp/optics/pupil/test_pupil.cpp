@@ -160,19 +160,6 @@ TEST_CASE("a pupil that has changed much is the same as without the one before")
     CHECK(is_as_without(lens, 20));
 }
 
-TEST_CASE("a film point out of the image circle gets no weight") {
-    LensSystem lens = io::read_lens("fisheye-10mm");
-    const Pupil pupil(lens, 40);
-    REQUIRE(pupil.image_radius() < 40);
-    for (const double radius : {pupil.image_radius() * 1.0001, 30.0, 39.0})
-        for (int i = 0; i < 64; ++i) {
-            const PupilSample s =
-                sample_pupil(pupil.view(), static_cast<float>(radius), 0, static_cast<float>(i) / 64, 0.3f);
-            CHECK(s.weight == 0);
-            CHECK(std::isfinite(length(s.direction)));
-        }
-}
-
 TEST_CASE("the lens ends the image, whatever the size of the film that it is on") {
     for (const char* name : {"eye-22mm", "fisheye-6mm-220deg", "phone-4mm", "phone-4mm-three-elements"}) {
         CAPTURE(name);

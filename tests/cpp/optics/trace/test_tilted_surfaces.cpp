@@ -93,33 +93,6 @@ TEST_CASE("a prism at minimum deviation deviates by 2 asin(n sin(a/2)) - a") {
     CHECK(angle_between(ray.direction, towards) == about(2 * incidence - apex * kDegree, 1e-14));
 }
 
-TEST_CASE("a tilted plate shifts light by t sin(i) (1 - cos i / (n cos r))") {
-    const double n = 1.6, tilt = 35, t = 12;
-    LensSystem lens =
-        lens_of({refracting(0, t, Glass::constant(n), 30), refracting(0, 20, Glass::air(), 30), stop_plane(0, 30)});
-    lens = with_element_tilted(lens, 0, 1, {{0, 0, 0}, {0, tilt, 0}, false});
-    const TracedRay ray = RayTracer(lens, LightDirection::to_film)({0, 0, -5}, {0, 0, 1});
-    REQUIRE(ray.passed());
-    CHECK(length(ray.direction - Vec3d{0, 0, 1}) < 1e-15);
-    const double i = tilt * kDegree, r = std::asin(std::sin(i) / n);
-    // The normal leans to +x, and so does the light inside.
-    CHECK(ray.origin.x == about(t * std::sin(i) * (1 - std::cos(i) / (n * std::cos(r))), 1e-14));
-    CHECK(std::fabs(ray.origin.y) < 1e-15);
-    CHECK(ray.origin.z == about(t + 20, 1e-14));  // the stop has stayed in its place
-}
-
-TEST_CASE("a periscope of two mirrors shifts light and leaves its direction") {
-    LensSystem lens = lens_of({stop_plane(20, 3), placed(plane_mirror(0, 8), {0, 0, 0}, {45, 0, 0}, true),
-                               placed(plane_mirror(0, 8), {0, 50, 0}, {45, 0, 0}, true)});
-    const Vec3d towards = normalized(Vec3d{0.01, 0.02, 1});
-    const TracedRay ray = RayTracer(lens, LightDirection::to_film)({0.25, -0.5, -1}, towards);
-    REQUIRE(ray.passed());
-    CHECK(length(ray.direction - towards) < 1e-15);
-    // Two parallel mirrors move a line by twice what lies between them: here by (0, 50, -50).
-    CHECK(ray.at(100).x == about(0.25 + 0.01 * 151, 1e-14));
-    CHECK(ray.at(100).y == about(-0.5 + 0.02 * 151 + 50, 1e-14));
-}
-
 TEST_CASE("every moved element leaves what is in its place in place") {
     LensSystem lens =
         lens_of({refracting(50, 4, Glass::constant(1.6), 10), refracting(-80, 6, Glass::air(), 10), stop_plane(3, 5),
