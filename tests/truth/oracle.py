@@ -1,4 +1,4 @@
-"""Rays and first-order data with 50 digits, written straight from the textbook: the judge where programs disagree.
+"""Rays with 50 digits, written straight from the textbook: the judge where programs disagree.
 
 No line is shared with realcam or with a peer: intersections are roots of the sag equation, refraction is Snell's law
 for unit vectors. A ray crosses a surface where it meets it within the rim and comes from the side from which light
@@ -174,52 +174,3 @@ def trace(prescription: Prescription, rays: Rays) -> Traced:
             figures = [float(v) for v in result]
             out.positions[i], out.directions[i], out.optical_paths[i] = figures[:3], figures[3:6], figures[6]
     return out
-
-
-def _paraxial(rows: list[Row], height, slope, first: int, last: int):
-    """Height at surface `last` and slope behind it, of a ray that arrives at surface `first`: n'u' = nu - yc(n' - n).
-
-    Behind a mirror indices are negative.
-    """
-    index, sign = mp.mpf(1), 1
-    for i, row in enumerate(rows[: last + 1]):
-        before = sign * index
-        if row.type == "mirror":
-            sign = -sign
-        index = row.index
-        after = sign * index
-        if i < first:
-            continue
-        curvature = mp.mpf(0) if math.isinf(row.radius) else 1 / row.radius
-        slope = (before * slope - height * curvature * (after - before)) / after
-        if i < last:
-            height += row.thickness * slope
-    return height, slope
-
-
-def first_order(prescription: Prescription) -> dict[str, float]:
-    """Named and measured as realcam does: positions from the first vertex."""
-    with mp.workdps(DIGITS):
-        rows = [_surface(row).exact for row in prescription.rows]
-        end, stop = len(rows) - 1, prescription.stop
-        one, none = mp.mpf(1), mp.mpf(0)
-        height, slope = _paraxial(rows, one, none, 0, end)
-        focal_length = -1 / slope
-        _, inclined = _paraxial(rows, none, one, 0, end)
-        at_stop, _ = _paraxial(rows, one, none, 0, stop)
-        tilted_at_stop, _ = _paraxial(rows, none, one, 0, stop)
-        entrance = 2 * rows[stop].semi_diameter / abs(at_stop)
-        y, u = _paraxial(rows, none, one, stop, end)
-        exit_from_last = -y / u
-        y, u = _paraxial(rows, rows[stop].semi_diameter, none, stop, end)
-        figures = {
-            "effective_focal_length_mm": focal_length,
-            "back_focal_distance_mm": -height / slope,
-            "front_focal_distance_mm": inclined / slope,
-            "f_number": abs(focal_length) / entrance,
-            "entrance_pupil_position_mm": tilted_at_stop / at_stop,
-            "entrance_pupil_diameter_mm": entrance,
-            "exit_pupil_position_mm": sum(row.thickness for row in rows[:-1]) + exit_from_last,
-            "exit_pupil_diameter_mm": 2 * abs(y + u * exit_from_last),
-        }
-        return {name: float(value) for name, value in figures.items()}

@@ -1,36 +1,16 @@
-"""Case C: closed forms that a lens must obey, through the Python API."""
+"""Case C: a thick lens in closed form, through the Python API.
+
+tests/cpp/optics/trace/test_perfect_surfaces.cpp has surfaces that image a point perfectly. test_truth_peers.py holds
+rays on their way back and the pupils of every bundled lens.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 
-import numpy as np
 import pytest
 import realcam as rc
-
-from ..centred_lenses import CENTRED
-from .perfect_lenses import ellipsoid, folded_paraboloid, thin_lens, thin_lens_aberration
-
-LENSES = CENTRED
-Trace = Callable[..., rc.TraceResult]
-
-
-def stop(semi_diameter: float) -> rc.Surface:
-    return rc.Stop(clear_semi_diameter_mm=semi_diameter)
-
-
-def parallel(heights: np.ndarray, z: float = -10.0) -> tuple[np.ndarray, np.ndarray]:
-    """Rays along the axis at these distances from it, at azimuths of the golden angle."""
-    azimuth = 2.4 * np.arange(len(heights))
-    origins = np.stack([heights * np.cos(azimuth), heights * np.sin(azimuth), np.full_like(heights, z)], axis=1)
-    return origins, np.tile([0.0, 0.0, 1.0], (len(heights), 1))
-
-
-def miss(rays: rc.TraceResult, z: float) -> np.ndarray:
-    """How far the rays, as straight lines, pass from a point of the axis."""
-    assert (rays.status == rc.RayStatus.OK).all()
-    return np.linalg.norm(np.cross(np.array([0, 0, z]) - rays.origins_mm, rays.directions), axis=1)
 
 
 @pytest.mark.parametrize(
@@ -43,10 +23,13 @@ def miss(rays: rc.TraceResult, z: float) -> np.ndarray:
         (-100, -30, 20, 2.0),
     ],
 )
-def test_thick_lens(r1: float, r2: float, d: float, n: float, trace: Trace) -> None:
+def test_thick_lens(r1: float, r2: float, d: float, n: float, trace: Callable[..., rc.TraceResult]) -> None:
     rim = {"clear_semi_diameter_mm": 5.0}
     front = rc.Surface(radius_of_curvature_mm=r1, thickness_mm=d, material=n, **rim)
-    lens = rc.Lens(surfaces=[stop(2), front, rc.Surface(radius_of_curvature_mm=r2, **rim)], film_distance_mm=1000)
+    lens = rc.Lens(
+        surfaces=[rc.Stop(clear_semi_diameter_mm=2), front, rc.Surface(radius_of_curvature_mm=r2, **rim)],
+        film_distance_mm=1000,
+    )
     # Lensmaker's equation; the focal points from the vertices.
     focal_length = 1 / ((n - 1) * (1 / r1 - 1 / r2 + (n - 1) * d / (n * r1 * r2)))
     first = lens.first_order()
@@ -57,129 +40,8 @@ def test_thick_lens(r1: float, r2: float, d: float, n: float, trace: Trace) -> N
     # The stop is in front of the glass: it is the entrance pupil.
     assert (first.entrance_pupil_position_mm, first.entrance_pupil_diameter_mm) == (0, 4)
     # A real ray close to the axis crosses it at the back focal point.
-    origins, directions = parallel(np.array([1e-4]))
-    out = trace(lens, origins, directions, start="scene")
+    out = trace(lens, [[1e-4, 0, -10]], [[0, 0, 1]], start="scene")
     reach = -out.origins_mm[0, 0] / out.directions[0, 0] * out.directions[0, 2]
     crossing = out.origins_mm[0, 2] + reach - lens.vertices_mm[-1]
     # Third order: (1e-4 / 25)^2, and the rounding of the slope of 1e-6.
     assert crossing == pytest.approx(first.back_focal_distance_mm, rel=1e-8)
-
-
-@pytest.mark.parametrize("n", [1.3, 1.5168, 2.0])
-@pytest.mark.parametrize("radius", [2.0, 30.0])
-def test_aplanatic_points_of_a_sphere(n: float, radius: float, trace: Trace) -> None:
-    """Rays in air that aim at R n behind the centre meet at R / n behind it, in the glass: all of them."""
-    sphere = rc.Surface(radius_of_curvature_mm=radius, material=n, clear_semi_diameter_mm=0.999 * radius)
-    lens = rc.Lens(surfaces=[stop(10 * radius), sphere], film_distance_mm=1.0, allow_overlap=True)
-    aim, image = radius * (1 + n), radius * (1 + 1 / n)
-    heights = 0.98 * radius * np.linspace(0.05, 1, 40)
-    on_sphere, _ = parallel(heights)
-    on_sphere[:, 2] = radius - np.sqrt(radius**2 - heights**2)
-    directions = np.array([0, 0, aim]) - on_sphere
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    out = trace(lens, on_sphere - radius * directions, directions, start="scene")
-    assert miss(out, image).max() < 1e-9 * radius
-    # Abbe's sine condition, which makes them aplanatic: sin u / sin u' = 1 / n for all.
-    sines = [np.hypot(d[:, 0], d[:, 1]) for d in (directions, out.directions)]
-    np.testing.assert_allclose(sines[1], n * sines[0], rtol=1e-9)
-
-
-@pytest.mark.parametrize("n", [1.4, 1.5168, 1.9])
-def test_ellipsoid_images_infinity_perfectly_into_glass(n: float, trace: Trace) -> None:
-    lens = ellipsoid(n)
-    focus = lens.film_position_mm
-    out = trace(lens, *parallel(np.linspace(0.5, 28.9, 50)), start="scene")
-    assert miss(out, focus).max() < 1e-9
-    # Equal optical paths to the focus: Fermat's principle.
-    left = n * np.linalg.norm(np.array([0, 0, focus]) - out.origins_mm, axis=1)
-    assert np.ptp(out.optical_path_mm + left) < 1e-9
-
-
-def test_paraboloid_mirror_images_infinity_on_its_focus(trace: Trace) -> None:
-    lens = folded_paraboloid()
-    out = trace(lens, *parallel(np.linspace(0.5, 79, 50)), start="scene")
-    assert lens.film_position_mm == pytest.approx(70)
-    assert miss(out, 70.0).max() < 1e-9
-    assert abs(lens.first_order().effective_focal_length_mm) == pytest.approx(100, rel=1e-12)
-    # A sphere of the same radius misses it by h^3 / (2 R^2) and more.
-    worse = trace(lens.with_surface(1, conic=0), *parallel(np.array([40.0])), start="scene")
-    assert miss(worse, 70.0)[0] == pytest.approx(40**3 / (2 * 200**2), rel=0.1)
-
-
-def third_order(lens: rc.Lens, trace: Trace) -> float:
-    """(1 / s' at height h less 1 / f) / h^2 of real rays, extrapolated to the axis."""
-    heights = np.linspace(0.5, 2, 7)
-    out = trace(lens, *parallel(heights), start="scene")
-    radial = np.hypot(out.origins_mm[:, 0], out.origins_mm[:, 1])
-    inward = np.hypot(out.directions[:, 0], out.directions[:, 1])
-    crossing = out.origins_mm[:, 2] + radial / inward * out.directions[:, 2]
-    values = (1 / crossing - 1 / lens.first_order().effective_focal_length_mm) / heights**2
-    return float(np.polyfit(heights**2, values, 2)[-1])
-
-
-@pytest.mark.parametrize("n", [1.5, 1.8])
-@pytest.mark.parametrize("shape", [-2.0, -1.0, 0.0, 0.5, 1.0, 2.0])
-def test_spherical_aberration_of_a_thin_lens_against_its_bending(shape: float, n: float, trace: Trace) -> None:
-    # The fit leaves out the eighth order in h / f = 0.02.
-    assert third_order(thin_lens(shape, n), trace) == pytest.approx(thin_lens_aberration(shape, n), rel=1e-4)
-
-
-@pytest.mark.parametrize("name", LENSES)
-def test_light_retraces_itself(name: str, trace: Trace) -> None:
-    lens = rc.Lens.load(name)
-    rng = np.random.default_rng(4)
-    first, film = lens.first_order(), lens.film_position_mm
-    height = 0.45 * min(lens.film_mm)
-    origins = np.stack([*rng.uniform(-height, height, (2, 4000)), np.full(4000, film)], axis=1)
-    pupil = 0.55 * first.exit_pupil_diameter_mm * rng.uniform(-1, 1, (4000, 2))
-    target = np.concatenate([pupil, np.full((4000, 1), first.exit_pupil_position_mm)], axis=1)
-    directions = (target - origins) * np.sign(film - first.exit_pupil_position_mm)
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    out = trace(lens, origins, directions, start="film")
-    passed = out.status == rc.RayStatus.OK
-    assert passed.sum() > 400
-    # Start a little in front of the lens, and go all the way back to the film.
-    ahead = out.origins_mm + 5 * out.directions
-    back = trace(lens, ahead[passed], -out.directions[passed], start="scene")
-    # A ray that grazes a rim may be cut on the way back.
-    same = back.status == rc.RayStatus.OK
-    assert same.mean() > 0.999
-    reach = (film - back.origins_mm[:, 2]) / back.directions[:, 2]
-    landed = back.origins_mm + reach[:, None] * back.directions
-    # 1e-10 mm in double precision; half a metre of glass and mirrors turns 1e-16 into no more than that.
-    assert np.abs(landed - origins[passed])[same].max() < 1e-10
-    assert np.abs(back.directions + directions[passed])[same].max() < 1e-10
-
-
-@pytest.mark.parametrize("name", LENSES)
-def test_pupils_obey_the_lagrange_invariant(name: str, trace: Trace) -> None:
-    """A ray through the middle of the entrance pupil leaves from the middle of the exit pupil.
-
-    Its slope has changed by the ratio of their diameters.
-    """
-    lens = rc.Lens.load(name)
-    first, slope = lens.first_order(), 1e-5
-    # A central obstruction would stop it: the surfaces without theirs.
-    surfaces = [
-        rc.Surface(
-            radius_of_curvature_mm=s.radius_of_curvature_mm,
-            thickness_mm=s.thickness_mm,
-            material=None if s.material.label == "" else s.material,
-            clear_semi_diameter_mm=s.clear_semi_diameter_mm,
-            conic=s.conic,
-            aspheric_coefficients=s.aspheric_coefficients,
-            type=s.type,
-        )
-        for s in lens.surfaces
-    ]
-    open_lens = rc.Lens(surfaces=surfaces, film_distance_mm=lens.film_distance_mm, wavelength_nm=lens.wavelength_nm)
-    z = -20.0
-    origin = [[(z - first.entrance_pupil_position_mm) * slope, 0.0, z]]
-    out = trace(open_lens, origin, [[slope, 0.0, 1.0]], start="scene")
-    assert out.status[0] == rc.RayStatus.OK
-    leaving = out.directions[0, 0] / out.directions[0, 2]
-    ratio = first.entrance_pupil_diameter_mm / first.exit_pupil_diameter_mm
-    # Third order in 1e-5 and double precision over a small slope.
-    assert abs(leaving / slope) == pytest.approx(ratio, rel=1e-7)
-    crossing = out.origins_mm[0, 2] - out.origins_mm[0, 0] / leaving
-    assert crossing == pytest.approx(first.exit_pupil_position_mm, rel=1e-6, abs=1e-5)

@@ -182,17 +182,15 @@ def test_first_order_data(peer: str) -> None:
 
 
 def test_oracle(backend: str) -> None:
-    """The judge itself, on two rays and all figures of first order of every second lens."""
-    found, errors = [], []
+    """The judge itself, on two rays of every second lens."""
+    found = []
     half = CASES[::2]
     for case, ours in zip(half, traced(backend)[::2], strict=True):
         few = np.flatnonzero(ours.ok)[:2]
         judge = oracle.trace(case.lens, case.rays[few])
         assert judge.ok.all(), case.lens.name
         found.append(comparison.between(ours[few], judge))
-        errors += comparison.relative(backends.first_order(case.lens), oracle.first_order(case.lens)).values()
     hold_differences(found, "against 50 digits", tried(half, sum(len(d.position) for d in found)), backend)
-    hold_first_order(errors, len(half), "50 digits")
 
 
 def test_a_slip_in_the_seventh_decimal_shows(backend: str) -> None:

@@ -1,8 +1,9 @@
-"""Third-order and chromatic sums through the Python API: the CODE V listing (case A), closed forms (case C)."""
+"""Third-order and chromatic sums through the Python API: the CODE V listing (case A) and the Lagrange invariant.
+
+tests/cpp/optics/analysis/test_seidel.cpp has the closed forms.
+"""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 import pytest
@@ -11,7 +12,6 @@ import realcam as rc
 from ..centred_lenses import CENTRED
 from ..measurement import Measurement, hold
 from . import code_v_listing as listing
-from .perfect_lenses import thin_lens, thin_lens_aberration
 
 LENS = rc.Lens.load("double-gauss-100mm")
 SUMS = LENS.seidel(14.0000000032, colours_nm=(486.1, 656.3))
@@ -76,27 +76,6 @@ def test_paraxial_image_height() -> None:
     assert height == pytest.approx(24.9337, abs=0.51e-4)
     on_film = SUMS.chief_height_mm[-1] + SUMS.chief_slope[-1] * LENS.film_distance_mm
     assert on_film == pytest.approx(24.846684, abs=0.51e-6)
-
-
-@pytest.mark.parametrize("n", [1.5, 1.8])
-@pytest.mark.parametrize("bending", [-2.0, -1.0, 0.0, 0.5, 1.0, 2.0])
-def test_thin_lens(bending: float, n: float) -> None:
-    """Spherical aberration by its closed form; colour by C_I = h^2 K / V."""
-    sums = thin_lens(bending, (n, 50.0)).seidel(5.0)
-    # W040 = (1 / s' - 1 / f) h^2 / 4 at third order, and S_I = 8 W040.
-    spherical = sums.seidel_mm[:, 0].sum()
-    assert spherical == pytest.approx(2 * thin_lens_aberration(bending, n) * 5.0**4, rel=1e-12)
-    assert sums.coefficients_waves[:, 0].sum() == pytest.approx(spherical / 8 / 587.5618e-6, rel=1e-12)
-    glass = rc.Glass.from_abbe_number(n, 50.0)
-    abbe_number = (n - 1) / (glass.index(486.1327) - glass.index(656.2725))
-    assert sums.colour_mm[:, 0].sum() == pytest.approx(25 / 100 / abbe_number, rel=1e-12)
-    assert sums.colour_mm[:, 1].sum() == pytest.approx(0, abs=1e-15)
-    # The stop on a thin lens leaves no distortion; S_III = H^2 K and S_IV = H^2 K / n whatever the bending.
-    invariant = sums.lagrange_invariant_mm
-    assert invariant == pytest.approx(5 * math.tan(math.radians(5)), rel=1e-12)
-    assert sums.seidel_mm[:, 2].sum() == pytest.approx(invariant**2 / 100, rel=1e-12)
-    assert sums.seidel_mm[:, 3].sum() == pytest.approx(invariant**2 / 100 / n, rel=1e-12)
-    assert sums.seidel_mm[:, 4].sum() == pytest.approx(0, abs=1e-15)
 
 
 @pytest.mark.parametrize("name", CENTRED)

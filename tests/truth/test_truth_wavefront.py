@@ -1,4 +1,7 @@
-"""Wavefronts through the Python API: the CODE V listing (case A), closed forms (case C), and another program."""
+"""Wavefronts through the Python API: the CODE V listing (case A), and another program.
+
+tests/cpp/optics/analysis/test_wavefront.cpp has perfect lenses and closed forms.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,6 @@ import realcam as rc
 
 from ..measurement import Measurement, hold
 from . import code_v_listing as listing
-from .perfect_lenses import ellipsoid, folded_paraboloid
 
 LENS = listing.listed_lens()
 FIELDS = {field.field_deg: field for field in listing.FIELD_ABERRATIONS}
@@ -85,77 +87,6 @@ def test_the_reference_sphere_of_the_axis() -> None:
     # To the exit pupil of the listing, 53.1569 in front of the last vertex.
     assert wavefront.reference_radius_mm == pytest.approx(61.087268 + 53.1569, abs=0.6e-4)
     assert wavefront.reference_radius_mm == pytest.approx(LENS.film_position_mm - first.exit_pupil_position_mm)
-
-
-def test_paraboloid_mirror_is_perfect() -> None:
-    wavefront = folded_paraboloid().wavefront(pattern="hexapolar", samples=20)
-    measured("optical path difference of a folded paraboloid", "1261 rays", largest(wavefront.opd_waves), 1e-6)
-    assert wavefront.strehl == pytest.approx(1, abs=1e-9)
-    assert folded_paraboloid().spot(samples=20).max_radius_mm < 1e-9
-
-
-@pytest.mark.parametrize("n", [1.4, 1.5168, 1.9])
-def test_ellipsoid_is_perfect(n: float) -> None:
-    wavefront = ellipsoid(n).wavefront(pattern="hexapolar", samples=20)
-    measured(f"optical path difference of an ellipsoid of index {n}", "1261 rays", largest(wavefront.opd_waves), 1e-6)
-
-
-def test_aplanatic_meniscus_is_perfect() -> None:
-    """A concave surface about the near object, then one to which it lies at R / n from the centre: imaged at n R."""
-    n, radius = 1.6, 30.0
-    lens = rc.Lens(
-        surfaces=[
-            rc.Stop(clear_semi_diameter_mm=12),
-            rc.Surface(
-                radius_of_curvature_mm=-20,
-                thickness_mm=radius + radius / n - 20,
-                material=n,
-                clear_semi_diameter_mm=16,
-            ),
-            rc.Surface(radius_of_curvature_mm=-radius, clear_semi_diameter_mm=29),
-        ],
-        film_distance_mm=1.0,
-    )
-    image = -radius - n * radius
-    wavefront = lens.wavefront(object_distance_m=0.020, film_distance_mm=image, pattern="hexapolar", samples=20)
-    measured("optical path difference of an aplanatic meniscus", "1261 rays", largest(wavefront.opd_waves), 1e-6)
-
-
-@pytest.mark.parametrize("defocus_mm", [-0.3, 0.02, 2.0])
-def test_defocused_paraboloid(defocus_mm: float) -> None:
-    """Nearly pure W020 at f/10: RMS W020 / sqrt 12, Strehl ratio (sin(pi W020) / (pi W020))^2."""
-    lens = folded_paraboloid(defocus_mm, semi_diameter_mm=5.0)
-    wavefront = lens.wavefront(pattern="rings", samples=40)
-    # From the focus on, all rays have one path: the sphere about the film's point, of radius R, cuts them at
-    # D (1 - cos T) - (R - sqrt(R^2 - D^2 sin^2 T)) from where it cuts the axis.
-    half = math.atan(5.0 / 200)
-    radius = wavefront.reference_radius_mm
-    sagitta = (defocus_mm * math.sin(2 * half)) ** 2 / radius
-    w020 = defocus_mm * 2 * math.sin(half) ** 2 - sagitta / (1 + math.sqrt(1 - sagitta / radius))
-    w020 *= 1e6 / lens.wavelength_nm
-    # The fourth-order part, 6e-4 of it, is in both by its square only.
-    assert wavefront.rms_waves == pytest.approx(abs(w020) / math.sqrt(12), rel=1e-6)
-    assert wavefront.strehl == pytest.approx(np.sinc(w020) ** 2, abs=1e-5)
-    assert wavefront.strehl_marechal == pytest.approx(math.exp(-((2 * math.pi * wavefront.rms_waves) ** 2)))
-    focused = lens.wavefront(pattern="rings", samples=40, remove="focus")
-    assert focused.rms_waves < 2e-4 * wavefront.rms_waves
-
-
-def test_spherical_aberration_goes_over_into_its_third_order() -> None:
-    """A plano-convex singlet, closed more and more: W / r^4 at the edge of the stop, extrapolated, is W040."""
-    surfaces = [
-        rc.Stop(clear_semi_diameter_mm=10),
-        rc.Surface(radius_of_curvature_mm=51.68, thickness_mm=4, material=1.5168, clear_semi_diameter_mm=11),
-        rc.Surface(clear_semi_diameter_mm=11),
-    ]
-    open_lens = rc.Lens(surfaces=surfaces, film_distance_mm=90)
-    focus = open_lens.first_order().back_focal_distance_mm
-    shares = np.array([0.2, 0.1, 0.05])
-    edge = open_lens.wavefront(film_distance_mm=focus, pupil=[[0, share] for share in shares]).opd_waves / shares**4
-    once = (4 * edge[1:] - edge[:-1]) / 3
-    third_order = open_lens.seidel(0).coefficients_waves[:, 0].sum()
-    # Rounding: 1e-10 waves over 0.05^4.
-    assert (16 * once[1] - once[0]) / 15 == pytest.approx(third_order, abs=3e-5)
 
 
 # Optiland 0.6.3, chief_ray strategy, of the prescription "phone-4mm" with constant indices (12 aspheres, stop at the

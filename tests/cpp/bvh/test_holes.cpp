@@ -120,35 +120,4 @@ TEST_CASE("holes: Embree's filter and the wide BVH stop a ray at the same triang
     }
 }
 
-TEST_CASE("holes: rays pass plates as often as their opacities say") {
-    Scene scene;
-    constexpr int kPlates = 3;
-    for (std::uint32_t i = 0; i < kPlates; ++i) {
-        const double z = -1.0 - i;
-        for (const Vec3d corner : {Vec3d{-9, -9, z}, Vec3d{9, -9, z}, Vec3d{0, 9, z}})
-            scene.positions_m.push_back(corner);
-        scene.triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, i});
-        scene.materials.push_back(Material{});
-        scene.materials.back().opacity = 0.2f * static_cast<float>(i + 1);
-    }
-    const RenderSpaceScene placed(Assembly(scene), {0, 0, 0});
-    const SceneBvh bvh = build_scene_bvh(placed);
-    const SceneView view = placed.view();
-    constexpr int kRays = 200000;
-    double stopped[kPlates + 1] = {};
-    for (std::uint32_t i = 0; i < kRays; ++i) {
-        const Hit hit =
-            closest_hit(bvh.static_geometry.view(), {0, 0, 0}, {0, 0, -1}, kFarAway, AnySceneRay{view, hash32(i), 0});
-        stopped[hit.triangle == kNoTriangle ? kPlates : hit.triangle] += 1.0 / kRays;
-    }
-    double left = 1;
-    for (int i = 0; i <= kPlates; ++i) {
-        const double expected = i < kPlates ? left * 0.2 * (i + 1) : left;
-        CAPTURE(i);
-        // Five standard errors.
-        CHECK(std::fabs(stopped[i] - expected) < 5 * std::sqrt(expected * (1 - expected) / kRays));
-        left -= expected;
-    }
-}
-
 #endif

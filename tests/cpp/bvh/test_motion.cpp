@@ -207,16 +207,4 @@ TEST_CASE("motion: lamps shine from where they are") {
     }
 }
 
-TEST_CASE("motion: a camera between its keys") {
-    Camera camera;
-    camera.lens = io::read_lens("tessar-50mm");
-    set_motion(camera, {{0, {{0, 0, 0}, {0, 0, -1}, {0, 1, 0}}}, {1, {{2, 0, 0}, {1, 0, 0}, {0, 1, 0}}}});
-    const Pose pose = pose_at(camera, 0.5);
-    CHECK(length(pose.position_m - Vec3d{1, 0, 0}) < 1e-15);
-    const double half = std::sqrt(0.5);
-    CHECK(length(normalized(pose.look_at_m - pose.position_m) - Vec3d{-half, 0, -half}) < 1e-15);
-    CHECK(pose_at(camera, -3) == camera.motion[0].pose);
-    CHECK(pose_at(camera, 1) == camera.motion[1].pose);
-}
-
 #endif

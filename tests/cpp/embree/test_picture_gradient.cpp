@@ -215,46 +215,6 @@ TEST_CASE("translation of a camera in front of a plane whose radiance is a linea
     CHECK(errors_between(found.both[kUp], zero) < kErrors);
 }
 
-TEST_CASE("exposure on the axis by the radius of the diaphragm") {
-    // E = pi L s^2, with the sine s of the angle at the film of the ray through the stop's rim.
-    Camera camera = corner_camera(4);
-    camera.lens.iris = {};
-    camera.film = {0.02, 0.02, 2, 2, {0, 0}};
-    const LensSystem& lens = camera.lens;
-    const auto sine_at = [&](double radius) {
-        // The ray's height at the stop grows with the sine.
-        const LensPath<double> path(lens, LightDirection::to_scene, lens.wavelength_nm);
-        LensView<double> view = path.view();
-        view.count -= lens.stop_index();
-        double low = 0, high = 0.5;
-        for (int halving = 0; halving < 50; ++halving) {
-            const double sine = 0.5 * (low + high);
-            LensRays<double, 1> ray;
-            ray.origin.set(0, {0, 0, lens.film_distance});
-            ray.direction.set(0, {sine, 0, -std::sqrt(1 - sine * sine)});
-            ray.status[0] = 0;
-            trace_lens(view, ray);
-            const bool inside = ray.status[0] == 0 && std::fabs(ray.origin.x[0]) < radius;
-            (inside ? low : high) = sine;
-        }
-        return low;
-    };
-    const double radius = lens.stop_semi_diameter, step = 1e-3 * radius;
-    const auto exposure = [&](double at) { return std::numbers::pi * sine_at(at) * sine_at(at); };
-    // Radii below the stop's: rays at larger ones end there.
-    const double truth = (exposure(radius - 1e-9) - exposure(radius - 2 * step)) / (2 * step);
-    const double curvature =
-        (exposure(radius - 1e-9) - 2 * exposure(radius - step) + exposure(radius - 2 * step)) / (step * step);
-    const double wanted = truth + curvature * step;  // at the radius itself, to second order
-    PictureGradient gradient(even_light(), camera, direct_light(), PixelFilter::tent, {});
-    const std::vector<float> adjoint(12, 1.0f / 12);
-    const Gradients found(gradient, adjoint, 16, 64);
-    // The pupil of the points beside the axis, 20 um away, has the same area to 1e-6, and differences to 1e-5.
-    CHECK(std::fabs(found.both[kStop].value - wanted) < kErrors * found.both[kStop].error + 1e-5 * wanted);
-    CHECK(found.both[kStop].error < 0.01 * wanted);
-    CHECK(found.interior[kStop].value == 0);
-}
-
 TEST_CASE("a knife edge in front of a thin lens, by pose, focus and stop") {
     // A lens of focal length f, thickness of 10 um and f/50, so that its aberrations and the cosines change the light
     // by 2e-4. A ray from the film point x through the point u of the lens meets the edge's plane, at the distance D,
@@ -392,46 +352,4 @@ TEST_CASE("derivatives of a picture with dispersion equal central differences") 
     check(2 + kRight, translation({1, 0, 0}), 2e-4, 1e3);
     check(2 + kYaw, [](Camera& c, double h) { c.pose.look_at_m = {-std::sin(h), 0, -std::cos(h)}; }, 5e-4, 1);
     check(2 + kStop, [](Camera& c, double h) { c.lens.stop_semi_diameter += h; }, 0.05, 1);
-}
-
-TEST_CASE("forward mode equals reverse mode on the same samples") {
-    const Camera camera = corner_camera(4);
-    PictureGradient gradient(occluded_stripes(), camera, direct_light(), PixelFilter::gaussian,
-                             {{LensQuantity::curvature, 0}, {LensQuantity::thickness, 1}});
-    const std::vector<float> adjoint = random_adjoint(camera);
-    const std::vector<float> control(adjoint.size(), 0.7f);
-    const GradientSamples samples{.seed = 3, .spp = 8, .outline_spp = 4};
-    const std::size_t count = gradient.number_count();
-    std::vector<double> directions(count * count);
-    for (std::size_t i = 0; i < count; ++i) directions[i * count + i] = 1;
-    const std::vector<double> reverse = gradient.reverse(adjoint.data(), control.data(), samples, {});
-    const std::vector<float> forward = gradient.forward(directions, control.data(), samples, {});
-    const auto size = static_cast<std::ptrdiff_t>(adjoint.size());
-    for (std::size_t i = 0; i < count; ++i) {
-        CAPTURE(i);
-        const auto first = forward.begin() + static_cast<std::ptrdiff_t>(i) * size;
-        const std::vector<float> picture(first, first + size);
-        double magnitude = 0;
-        for (std::size_t k = 0; k < picture.size(); ++k)
-            magnitude += std::fabs(static_cast<double>(picture[k]) * static_cast<double>(adjoint[k]));
-        // Pictures, and the adjoint at a film point, are rounded to float.
-        CHECK(std::fabs(product(picture, adjoint) - reverse[i]) <= 1e-5 * magnitude);
-    }
-}
-
-TEST_CASE("derivatives of pictures refuse by name what they do not support") {
-    const auto refused = [](const Camera& camera, const RenderSettings& settings, PixelFilter filter,
-                            const std::string& why) {
-        CAPTURE(why);
-        CHECK(message_of([&] { PictureGradient(even_light(), camera, settings, filter, {}); }).find(why) !=
-              std::string::npos);
-    };
-    const Camera camera = corner_camera(4);
-    refused(camera, direct_light(), PixelFilter::box, "need a smooth pixel filter");
-    RenderSettings settings = direct_light();
-    settings.effects.ghosts = true;
-    refused(camera, settings, PixelFilter::tent, "do not support the effect ghosts");
-    Camera thin = camera;
-    thin.model = CameraModel::thin_lens;
-    refused(thin, direct_light(), PixelFilter::tent, "need the camera model full");
 }

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -144,35 +142,3 @@ def test_rays_depend_on_seed_pixel_and_sample_alone() -> None:
     np.testing.assert_array_equal(few.directions, first)
     assert (camera.generate_rays(spp=4, seed=4).directions != few.directions).any()
     np.testing.assert_array_equal(camera.generate_rays(spp=4, seed=3).directions, few.directions)
-
-
-def test_rays_of_cameras_in_turn_and_on_threads() -> None:
-    """A camera's rays are the same whichever camera was asked before, and whichever thread asks."""
-    tessar = rc.Lens.load("tessar-50mm")
-    film = rc.Film(36, 24, (6, 4))
-    cameras = [rc.Camera(lens, film=film) for lens in (tessar, tessar.stopped_down(8.0), tessar.focused(2.0))]
-    cameras += [rc.Camera(tessar, film=film, model="thin"), rc.Camera(tessar, film=rc.Film(12, 8, (6, 4)))]
-
-    def directions(camera: rc.Camera) -> np.ndarray:
-        return camera.generate_rays(spp=16, seed=3).directions
-
-    expected = [directions(camera) for camera in cameras]
-    assert all((a != b).any() for a, b in itertools.combinations(expected, 2))
-    with ThreadPoolExecutor(4) as pool:
-        found = list(pool.map(directions, 6 * cameras))
-    for i, rays in enumerate(found):
-        np.testing.assert_array_equal(rays, expected[i % len(cameras)])
-
-
-def test_samples_cover_the_pupil_evenly() -> None:
-    """Stratified: each of 8 x 8 cells of equal area of the lens's disc gets its share of 256 samples."""
-    lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
-    camera = rc.Camera(lens, film=rc.Film(0.001, 0.001, (1, 1)), model="thin")
-    rays = camera.generate_rays(spp=256, seed=1)
-    radius = 0.5 * lens.first_order().entrance_pupil_diameter_mm / 1000
-    x, y = rays.origins_m[:, 0] / radius, rays.origins_m[:, 1] / radius
-    area = np.floor(8 * (x**2 + y**2)).astype(int).clip(0, 7)
-    turn = np.floor(8 * (np.arctan2(y, x) / (2 * math.pi) % 1)).astype(int).clip(0, 7)
-    counts = np.bincount(8 * area + turn, minlength=64)
-    # A (0, 2)-sequence puts exactly 4 of 256 points into each cell; one may fall on either side by rounding.
-    assert np.abs(counts - 4).max() <= 1

@@ -1,4 +1,4 @@
-"""Light on the film against closed forms and against the exposure integral summed by force."""
+"""Exposure of ideal models and of grey cards against closed forms. Light through lenses: test_estimator_lens.cpp."""
 
 from __future__ import annotations
 
@@ -8,89 +8,7 @@ import numpy as np
 import pytest
 import realcam as rc
 
-from ...centred_lenses import CENTRED
-from .. import scenes, yardsticks
-
-# One of each kind: sums by force take seconds.
-UNLIKE = (
-    "double-gauss-50mm",
-    "fisheye-6mm-220deg",
-    "hologon-15mm",
-    "landscape-100mm",
-    "mirror-telephoto-500mm",
-    "phone-4mm",
-    "projection-24mm-160deg",
-    "retrofocus-28mm",
-    "singlet-100mm",
-    "telephoto-200mm-inner-focus",
-    "ultra-wide-14mm",
-    "zoom-11-24mm",
-)
-
-
-def axial_exposure(lens: rc.Lens, *, model: str = "full", time_s: float = 1.0, spp: int = 4096) -> float:
-    """Mean exposure of 4 x 4 pixels of 5 um in the middle of the film, in a field of radiance 1."""
-    film = rc.Film(0.02, 0.02, (4, 4))
-    camera = rc.Camera(lens, film=film, exposure_time_s=time_s, model=model)
-    return float(rc.render(scenes.sky(), camera, effects=(), spp=spp).pixels.mean(dtype=np.float64))
-
-
-@pytest.mark.parametrize("name", CENTRED)
-def test_constant_field_gives_pi_sin_squared_on_the_axis(name: str) -> None:
-    lens = rc.Lens.load(name)
-    # At least 98% of the samples pass, all with the same weight, so that one standard deviation of the mean
-    # of 65536 samples is sqrt(0.02 / 65536) = 0.06%; four of them are half of what is allowed. 5 um pixels
-    # are 0.007 of the shortest distance to an exit pupil, whose cos^4 changes by 1e-4 over them.
-    assert axial_exposure(lens) == pytest.approx(yardsticks.axial_irradiance(lens), rel=0.005)
-
-
-@pytest.mark.parametrize("name", ["double-gauss-50mm", "fisheye-10mm", "telephoto-200mm-inner-focus"])
-@pytest.mark.parametrize("f_number", [5.6, 22.0])
-def test_constant_field_when_focused_near_and_stopped_down(name: str, f_number: float) -> None:
-    lens = rc.Lens.load(name).focused(3.0).stopped_down(f_number)
-    assert axial_exposure(lens) == pytest.approx(yardsticks.axial_irradiance(lens), rel=0.005)
-
-
-def illuminated_radius(lens: rc.Lens) -> float:
-    """Film radius up to which the film gets light, but at most its corner, mm."""
-    low, high = 0.0, 0.5 * math.hypot(*lens.film_mm)
-    if yardsticks.brute_force_irradiance(lens, high, 100, 400) > 0:
-        return high
-    for _ in range(8):
-        middle = 0.5 * (low + high)
-        lit = yardsticks.brute_force_irradiance(lens, middle, 100, 400) > 0
-        low, high = (middle, high) if lit else (low, middle)
-    return low
-
-
-@pytest.mark.parametrize("name", UNLIKE)
-def test_relative_illumination_equals_the_integral_summed_by_force(name: str) -> None:
-    lens = rc.Lens.load(name)
-    (width, height), columns = lens.film_mm, 240
-    rows = round(columns * height / width)
-    pitch = width / columns
-    camera = rc.Camera(lens, film=rc.Film(width, height, (columns, rows)), exposure_time_s=1)
-    picture = rc.render(scenes.sky(), camera, effects=(), spp=64).pixels[..., 0]
-    # Film radius of 4 x 4 points in each pixel.
-    x = (np.arange(4 * columns) + 0.5) / 4 * pitch - width / 2
-    y = (np.arange(4 * rows) + 0.5) / 4 * height / rows - height / 2
-    radius = np.hypot(y[:, None], x[None, :]).reshape(rows, 4, columns, 4)
-    middle = radius.mean(axis=(1, 3))
-
-    axis = yardsticks.brute_force_irradiance(lens, 0.0, 180)
-    rendered_axis, lit_mm = axial_exposure(lens), illuminated_radius(lens)
-    for share in (0.35, 0.65, 0.9):
-        required = share * lit_mm
-        ring = np.abs(middle - required) < 0.6 * pitch
-        # Over the width of the ring, and of its pixels, the irradiance is a parabola through three sums.
-        nodes = required + 1.2 * pitch * np.array([-1, 0, 1])
-        sums = [yardsticks.brute_force_irradiance(lens, r, 180) for r in nodes]
-        expected = np.polyval(np.polyfit(nodes - required, sums, 2), radius - required).mean(axis=(1, 3))[ring].mean()
-        # At least 100 pixels of 64 samples lie in a ring. For the least that may pass, 60% of the samples at
-        # the edge of a fisheye, one standard deviation is sqrt(0.67 / 6400) = 1% of independent samples;
-        # these are stratified, and elsewhere more pass. The sums are good to 180^-1.5 = 0.04%.
-        assert ring.sum() >= 100
-        assert picture[ring].mean(dtype=np.float64) / rendered_axis == pytest.approx(expected / axis, rel=0.01), share
+from .. import scenes
 
 
 def test_relative_illumination_of_ideal_models_is_cos_to_the_fourth() -> None:
@@ -164,11 +82,3 @@ def test_white_is_clipped_and_black_is_black() -> None:
     film = rc._core.develop(np.linspace(0, 2, 2000, dtype=np.float32), 100, "film").astype(int)
     assert (np.diff(film) >= 0).all()
     assert film[-1] == 255 or film[-1] > 250
-
-
-@pytest.mark.parametrize("name", CENTRED)
-def test_most_sampled_rays_pass(name: str) -> None:
-    lens = rc.Lens.load(name)
-    stats = rc.render(scenes.sky(), rc.Camera(lens, film=rc.Film(*lens.film_mm, (120, 80))), effects=(), spp=16).stats
-    # The aim for whole frames wide open; at least 80000 samples have a standard deviation of 0.1%.
-    assert stats.passed_rays / stats.sampled_rays >= 0.95

@@ -430,30 +430,3 @@ def test_commands(tmp_path: Path, realcam: Callable[..., tuple[int, str, str]]) 
     assert json.loads(text)["method"] == "geometric"
     _, text, errors = realcam("plot", "psf", "tessar-50mm", "--f-number", "8", "--method", "fft", "--json")
     assert json.loads(text)["method"] == "fft", errors
-
-
-@pytest.mark.pictures
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["plot", "mft", "tessar-50mm"], 'unknown plot "mft"'),
-        (["plot", "mtf"], "the name of a lens is missing"),
-        (["plot", "mtf", "tessar-50mm", "-o", "x.bmp"], ".tiff, .json or .csv"),
-        (["plot", "wavefront", "tessar-50mm", "--fields-deg", "0,5"], "of one field; 2 are given"),
-        (["plot", "mtf", "tessar-50mm", "--fields-deg", "1,a"], '"a" is not a number'),
-        (["plot", "mtf", "tessar-50mm", "--theme", "blue"], "expected light or dark"),
-        (["plot", "mtf", "tessar-50mm", "--method", "fft"], "expected diffraction or geometric"),
-        (["plot", "spot", "tessar-50mm", "--method", "fft"], "--method applies only to mtf"),
-        (["report", "tessar-50mm", "-o", "x.svg"], "expected .pdf or .html"),
-        (["report", "tessar-50mm", "--fields-deg", "1,2", "-o", "x.pdf"], "three fields; 2 are given"),
-        (["report", "tessar-50mm", "--fields-deg", "0,10,70", "-o", "x.pdf"], "70"),
-    ],
-)
-def test_mistakes_end_in_one_line(
-    arguments: list[str], message: str, tmp_path: Path, realcam: Callable[..., tuple[int, str, str]]
-) -> None:
-    code, _, errors = realcam(*arguments)
-    assert code == 2
-    assert message in errors
-    assert len(errors.splitlines()) == 1
-    assert not list(tmp_path.iterdir()), "nothing half-written"

@@ -325,25 +325,6 @@ def test_the_command_takes_options(tmp_path: Path, options: list[str]) -> None:
     assert target.is_file()
 
 
-@pytest.mark.parametrize(
-    ("options", "why"),
-    [
-        (["--theme", "pink"], 'theme "pink" is unknown; expected light or dark'),
-        (["--states", "all"], "expected one, rows or ghost"),
-        (["--fields", "0,x"], '--fields: "x" is not a number'),
-        (["--states", "ghost"], "does not specify a nearest focus"),
-        (["--states", "rows", "--focus", "2"], "cannot be combined with it"),
-        (["--wavelengths", "5"], "between 100 and 20000 nm"),
-    ],
-)
-def test_a_mistake_is_named(tmp_path: Path, options: list[str], why: str) -> None:
-    command = ["lens", "draw", "double-gauss-50mm", "-o", str(tmp_path / "a.svg"), *options]
-    result = CliRunner().invoke(cli.app, command)
-    assert isinstance(result.exception, rc.InputError)
-    assert why in str(result.exception)
-    assert not list(tmp_path.iterdir())
-
-
 @pytest.mark.slow
 def test_a_drawing_takes_less_than_a_second(tmp_path: Path) -> None:
     """The best of five runs counts, because other programs may run; a drawing takes 0.3 s on an idle core."""

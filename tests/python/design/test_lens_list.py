@@ -50,23 +50,6 @@ def test_all_lenses_with_their_figures(command: Command) -> None:
     assert (rows["tessar-50mm"]["title"], rows["tessar-50mm"]["year"]) == (tessar.title, 1952)
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        ("--kind telee", 'unknown kind "telee"'),
-        ("--focal wide", '--focal-length: "wide" is not a number or two with a minus between, 35-70'),
-        ("--focal 70-35", '--focal-length: "70-35": expected positive numbers, the smaller one first'),
-        ("--f-number 0", "--f-number: "),
-        ("no-such-lens", "no lens matches; realcam lens list shows all"),
-        ("--lens-path nowhere", "--lens-path: nowhere is no folder"),
-    ],
-)
-def test_mistakes(words: str, told: str, command: Command) -> None:
-    done = command("lens", "list", *words.split())
-    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
-    assert told in done.stderr
-
-
 def test_lenses_of_the_lens_path(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("REALCAM_LENS_PATH", "")
     rc.Lens.load("tessar-50mm").save(tmp_path / "mine.toml")

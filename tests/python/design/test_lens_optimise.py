@@ -53,32 +53,6 @@ def test_an_interruption_writes_the_best_lens_and_ends_in_130(
     assert rc.Lens.load(out).first_order().effective_focal_length_mm > 0
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["--vary", "colours"], '--vary: "colours": expected radii, thicknesses'),
-        (["--vary", "radius:x"], '"radius:x": expected whole numbers'),
-        (["--vary", "radius:70"], "there is no surface 70; the lens has 7"),
-        (["--vary", "radius:0"], "there is no surface 0; the lens has 7"),
-        (["--vary", "aspheric:2"], "conic:2 or aspheric:2:4"),
-        (["--vary", "conic:2"], "surface 2 is a plane"),
-        (["--glasses", "--global", "9"], "cannot be combined"),
-        (["--global", "9"], "finite bounds"),
-    ],
-)
-def test_mistakes_end_in_one_line(
-    words: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    lens = rc.Lens.load("cooke-triplet-50mm").with_surface(1, radius_of_curvature_mm=float("inf"))
-    lens.save(tmp_path / "lens.toml")
-    out = tmp_path / "out.toml"
-    code, _, errors = said([str(tmp_path / "lens.toml"), "-o", str(out), *words], monkeypatch, capsys)
-    assert code == 2
-    assert message in errors
-    assert errors.count("\n") == 1
-    assert not out.exists()
-
-
 def test_glass_does_not_become_thinner_than_can_be_made(tmp_path: Path) -> None:
     """Unless it is thinner already; air may."""
     from realcam.cli.optimise import Bounds

@@ -36,15 +36,6 @@ def galilean(film_distance_mm: float | None = 40.0) -> rc.Lens:
     )
 
 
-def test_an_afocal_lens_has_infinite_figures_and_finite_pupils() -> None:
-    data = galilean().first_order()
-    assert data.effective_focal_length_mm == math.inf
-    assert data.back_focal_distance_mm == math.inf
-    assert data.front_focal_distance_mm == -math.inf
-    assert data.f_number == math.inf
-    assert data.entrance_pupil_diameter_mm == pytest.approx(16, rel=1e-14)
-
-
 def test_what_an_afocal_lens_cannot_do_is_refused_with_the_reason() -> None:
     lens = galilean()
     for distance_m in (2.0, math.inf):
@@ -72,16 +63,6 @@ def test_a_camera_without_a_lens_is_a_pinhole() -> None:
     for model, value in mean.items():
         # The hole's own size changes the cosines by (0.1 / 20)^2; 1% of the full lens's samples miss.
         assert value == pytest.approx(mean["full"], rel=0.003), model
-
-
-def test_an_object_nearer_than_the_nearest_is_refused_with_the_nearest() -> None:
-    lens = rc.Lens.load("double-gauss-50mm")
-    with pytest.raises(rc.InputError, match=r"the nearest object plane .* 0\.19\d* m from it") as error:
-        lens.focused(0.15)
-    nearest_m = float(str(error.value).split()[-4])
-    near = lens.focused(1.01 * nearest_m)
-    object_m = 1.01 * nearest_m - near.film_position_mm / 1000
-    assert near.best_focus_mm(object_m) == pytest.approx(near.film_distance_mm, rel=1e-9)
 
 
 @pytest.mark.picture_files

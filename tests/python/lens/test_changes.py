@@ -113,19 +113,6 @@ def test_one_surface_of_a_lens_changes_and_nothing_else() -> None:
     assert changed.focused(5).focus_distance_m == 5
 
 
-def test_power_follows_the_radius_of_a_thin_lens() -> None:
-    """Lensmaker's equation: 1/f = (n - 1) (1/r1 - 1/r2), for a thickness that tends to 0."""
-    surfaces = [
-        rc.Stop(clear_semi_diameter_mm=2),
-        rc.Surface(radius_of_curvature_mm=50, thickness_mm=1e-9, material=1.5, clear_semi_diameter_mm=1e-3),
-        rc.Surface(radius_of_curvature_mm=-50, clear_semi_diameter_mm=1e-3),
-    ]
-    lens = rc.Lens(surfaces=surfaces, film_distance_mm=50)
-    for radius in (45, 60, 100):
-        focal_length = lens.with_surface(1, radius_of_curvature_mm=radius).first_order().effective_focal_length_mm
-        assert focal_length == pytest.approx(1 / (0.5 * (1 / radius + 1 / 50)), rel=1e-8)  # thickness / f is 2e-11
-
-
 def test_a_wide_open_stop_follows_its_rim_and_a_closed_one_stays() -> None:
     stop, rim = LENS.stop_index, LENS.surfaces[LENS.stop_index].clear_semi_diameter_mm
     closed, narrow = LENS.stop_semi_diameter_mm, 0.5 * LENS.stop_semi_diameter_mm

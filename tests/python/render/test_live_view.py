@@ -82,15 +82,6 @@ def test_frames_have_the_effects_that_are_named(scene: rc.Scene, on: str, effect
         live.shoot(camera(), effects=["sharpness"])
 
 
-@on_each
-def test_another_camera_begins_anew_and_another_exposure_does_not(scene: rc.Scene, on: str) -> None:
-    live = rc.LiveView(scene, device=on)
-    live.shoot(camera(), spp=4)
-    assert live.shoot(camera(exposure_time_s=0.5), spp=4).samples == 8
-    assert live.shoot(camera(x=0.1), spp=4).samples == 4
-    assert live.shoot(camera(x=500.0), spp=4).samples == 4  # far away: the scene is placed anew
-
-
 def live_picture_of(scene: rc.Scene, device: str) -> tuple[rc.LiveView, Any, Any]:
     """A view, and pixels and depth of two frames, which are those of render."""
     live = rc.LiveView(scene, device=device, seed=3, max_bounces=1)
@@ -115,15 +106,6 @@ def test_the_picture_on_the_cpu_is_that_of_render(scene: rc.Scene) -> None:
     live.shoot(camera(), spp=8).codes  # noqa: B018
     del live
     np.testing.assert_array_equal(pixels, before)
-
-
-def test_a_scene_that_is_shown_begins_anew(scene: rc.Scene) -> None:
-    live = rc.LiveView(scene, device="cpu")
-    live.shoot(camera(), spp=2)
-    live.show(frame_scene(spheres=2, boxes=2))
-    with pytest.raises(rc.InputError, match="no picture yet"):
-        live.picture()
-    assert live.shoot(camera(), spp=2).samples == 2
 
 
 def test_a_frame_on_the_cpu_is_under_way_while_others_work(scene: rc.Scene) -> None:

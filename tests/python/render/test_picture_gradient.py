@@ -152,12 +152,6 @@ def test_forward_is_the_transpose_of_reverse() -> None:
     assert np.all(np.abs((pictures * ADJOINT).sum((1, 2, 3)) - reverse) < 1e-5 * sizes)
 
 
-def test_even_light_has_no_derivative_by_pose() -> None:
-    # The control variate is the radiance itself.
-    gradient = rc.render_gradient(sky(), corner_camera(), ["right_m", "up_m", "yaw_deg"], ADJOINT, spp=4)
-    assert np.all(np.abs(gradient) < 1e-4)
-
-
 def test_filtered_picture_is_the_tent_of_a_finer_picture() -> None:
     scene, camera = stripes(), corner_camera()
     # 16 x 16 fine pixels per pixel, on a film that is one pixel wider on each side.

@@ -17,16 +17,6 @@ import realcam as rc
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 
 
-@pytest.mark.parametrize("suffix", [".obj", ".gltf", ".glb", ".ply"])
-def test_pipes_and_devices_are_refused_at_once(tmp_path: Path, suffix: str) -> None:
-    pipe, device = tmp_path / f"pipe{suffix}", tmp_path / f"zero{suffix}"
-    os.mkfifo(pipe)
-    device.symlink_to("/dev/zero")
-    for path in (pipe, device):
-        with pytest.raises(rc.SceneFileError, match="expected an ordinary file"):
-            rc.Scene.load(path)
-
-
 def test_names_that_are_no_utf_8(tmp_path: Path) -> None:
     """Names in files are read with U+FFFD for invalid bytes; a file's own name is accepted in Python's forms."""
     (tmp_path / "l.mtl").write_bytes(b"newmtl gr\xfcn\nd 0.5\nmap_Kd gr\xfcn.png\n")

@@ -50,13 +50,6 @@ def test_the_horizon_does_not_shimmer(shiny: bool) -> None:
     assert rms(grey - 0.5) < 0.1
 
 
-@pytest.mark.parametrize("spp", [1, 16])
-def test_levels_are_means_of_light(spp: int) -> None:
-    """Squares of one texel; the mean of their codes would be 0.21."""
-    picture = scenes.radiance(floor(FINE), camera(), spp=spp)[34:50, :, 0]
-    assert picture.mean() == pytest.approx(0.5, abs=0.01)
-
-
 def test_coverage_stays_what_it_is() -> None:
     """Maps of opacity have no levels: through half of the floor the sky is seen, whatever the distance."""
     alpha = np.full((256, 256, 4), 255, np.uint8)

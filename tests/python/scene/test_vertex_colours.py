@@ -28,28 +28,6 @@ def square(colors: np.ndarray, **material: object) -> rc.Scene:
     return rc.Scene.from_arrays(CORNERS, FACES, colors=colors, materials=[rc.Material(**material)])
 
 
-def test_colours_multiply_the_diffuse_colour_and_are_interpolated() -> None:
-    ends = np.array([[0.8, 0.2, 0.0], [0.4, 0.2, 1.0], [0.8, 0.6, 0.4], [0.4, 0.6, 0.6]])
-    scene = square(ends, diffuse=(1, 0.5, 0.25)).with_environment(1.0)
-    # Along the diagonal between the first and the third corner, from the camera's axis.
-    # Two pixels of 0.04 m at a distance of 2 m: over 18 m colours change by up to 1.
-    np.testing.assert_allclose(seen(scene), (ends[0] + ends[2]) / 2 * (1, 0.5, 0.25), atol=0.04 / 18)
-    plain = rc.Scene.from_arrays(CORNERS, FACES, materials=[rc.Material(diffuse=(0.5, 0.5, 0.5))])
-    white = square(np.ones((4, 3)), diffuse=(0.5, 0.5, 0.5))
-    np.testing.assert_allclose(seen(white.with_environment(1.0)), seen(plain.with_environment(1.0)), rtol=1e-5)
-
-
-def test_alpha_lets_light_through() -> None:
-    colors = np.full((4, 4), 0.25)
-    behind = scenes.scene_of(scenes.quad((0, 0, -5), 50, emission=1.0))
-    scene = square(colors, diffuse=0 * np.ones(3)).with_instance(behind)
-    camera = scenes.pinhole()
-    pixels = rc.render(scene, camera, effects=(), spp=400, max_bounces=0).pixels
-    full = rc.render(behind, camera, effects=(), spp=4, max_bounces=0).pixels
-    # 24 x 16 pixels of 400 samples, 3 in 4 pass: half a percent of the mean is six standard deviations.
-    np.testing.assert_allclose(pixels.mean() / full.mean(), 0.75, rtol=0.005)
-
-
 def test_scenes_with_colours_are_values() -> None:
     scene = square(np.array([[1, 0, 0, 0.5]] * 4))
     assert pickle.loads(pickle.dumps(scene)) == scene
@@ -70,21 +48,6 @@ def test_instances_and_large_triangles_keep_their_colours() -> None:
     np.testing.assert_allclose(seen(large.with_environment(1.0)), expected, atol=1e-5)
     instanced = scenes.sky(1.0).with_instance(small)
     np.testing.assert_allclose(seen(instanced), expected, atol=0.04 / 18)
-
-
-@pytest.mark.parametrize("kind", ["vertices", "faces"])
-def test_a_ply_with_colours_is_seen_in_them(tmp_path: Path, kind: str) -> None:
-    properties = "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-    red, of_vertex, of_face = "255 51 0", kind == "vertices", kind == "faces"
-    header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-    header += properties * of_vertex + "element face 2\nproperty list uchar int vertex_indices\n" + properties * of_face
-    vertices = "".join(f"{x:g} {y:g} {z:g} {red * of_vertex}\n" for x, y, z in CORNERS)
-    faces = "".join(f"3 {a} {b} {c} {red * of_face}\n" for a, b, c in FACES)
-    (tmp_path / "a.ply").write_text(header + "end_header\n" + vertices + faces)
-    scene = rc.Scene.load(tmp_path / "a.ply")
-    assert scene.warnings == []
-    # IEC 61966-2-1: the code 51 is 0.0331 of white.
-    np.testing.assert_allclose(seen(scene.with_environment(1.0)), (1, 0.033105, 0), atol=1e-4)
 
 
 def write_gltf(path: Path, nodes: list[dict[str, object]], cameras: list[dict[str, object]]) -> None:

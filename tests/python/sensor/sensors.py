@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from functools import cache
 
@@ -70,7 +69,3 @@ def electron_film(mean: float, shape: tuple[int, int], **changes: object) -> rc.
     lux_s = mean / photons_per_um2(1, 550)
     iso = counter(**changes).iso_range()[0]
     return film_of(np.full(shape, lux_s), pitch_um=1, iso=iso, illuminant="550")
-
-
-def log_factorials(largest: int) -> np.ndarray:
-    return np.array([math.lgamma(k + 1) for k in range(largest + 1)])

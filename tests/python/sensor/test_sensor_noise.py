@@ -6,31 +6,7 @@ import numpy as np
 import pytest
 import realcam as rc
 
-from .sensors import counter, electron_film, film_of, log_factorials, photons_per_um2
-
-
-@pytest.mark.parametrize("mean", [0.02, 0.7, 9.99, 10.01, 60.0, 1000.0, 30000.0])
-def test_electrons_are_poisson_distributed(mean: float) -> None:
-    """Pearson's chi-square against the probabilities themselves. With D degrees of freedom it has the mean D and the
-    variance 2 D; six deviations are one chance in 1e6 even for few bins, whose tail is longer.
-    """
-    raw = counter().expose(electron_film(mean, (1000, 1500)), seed=7)
-    counts = np.bincount(raw.mosaic.ravel().astype(int), minlength=3)
-    largest = len(counts) + 50
-    k = np.arange(largest + 1)
-    expected = raw.mosaic.size * np.exp(k * np.log(mean) - mean - log_factorials(largest))
-    counts = np.pad(counts, (0, largest + 1 - len(counts)))
-    # Bins of at least 25, the tails in the last ones.
-    edges = [0]
-    for i in range(len(k)):
-        if expected[edges[-1] : i + 1].sum() >= 25 and expected[i + 1 :].sum() >= 25:
-            edges.append(i + 1)
-    seen, required = np.add.reduceat(counts, edges), np.add.reduceat(expected, edges)
-    required[-1] = raw.mosaic.size - required[:-1].sum()
-    freedom = len(seen) - 1
-    chi_square = ((seen - required) ** 2 / required).sum()
-    assert freedom >= 1
-    assert abs(chi_square - freedom) < 6 * np.sqrt(2 * freedom) + 10
+from .sensors import counter, electron_film, film_of, photons_per_um2
 
 
 def test_the_mean_of_many_exposures_is_what_light_brings() -> None:

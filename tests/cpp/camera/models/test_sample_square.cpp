@@ -120,19 +120,3 @@ TEST_CASE("all numbers lie in [0, 1), and square_pdf is 0 outside") {
     CHECK(square_pdf({1, 0.5f}) == 0);
     CHECK(square_pdf({0.5f, -0x1p-24f}) == 0);
 }
-
-TEST_CASE("cos_sin_of_turn spreads even turns evenly over the circle") {
-    ChiSquareTests tests("cos_sin_of_turn: the angle");
-    constexpr int kBins = 1000, kSamples = 1 << 20;
-    std::vector<double> expected, counts(kBins);
-    for (int i = 0; i < kBins; ++i) expected.push_back(kSamples * static_cast<double>(kTurnPdf) * 2 * M_PI / kBins);
-    Uniform uniform(11);
-    for (int i = 0; i < kSamples; ++i) {
-        const Vec2f v = cos_sin_of_turn(uniform());
-        double turn = std::atan2(static_cast<double>(v.y), static_cast<double>(v.x)) / (2 * M_PI);
-        if (turn < 0) turn += 1;
-        ++counts[std::min(static_cast<std::size_t>(turn * kBins), std::size_t{kBins - 1})];
-    }
-    tests.add(expected, counts);
-    tests.hold();
-}

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gltf_files.hpp"
+#include "refusal.hpp"
 #include "scene/geometry/bounding_box.hpp"
 
 using namespace scene_files;
@@ -26,12 +27,7 @@ Vec3d placed(const Instance& instance, Vec3d p) {
 }
 
 std::string error_of_objects(const std::string& path, const std::vector<std::string>& names) {
-    try {
-        read_assembly(path, names);
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "no error";
+    return test::message_of<Error>([&] { read_assembly(path, names); });
 }
 
 }  // namespace

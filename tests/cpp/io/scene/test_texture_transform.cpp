@@ -62,28 +62,3 @@ TEST_CASE("a transform that no float holds is found") {
     CHECK_FALSE(TextureTransform(1, 1, HUGE_VAL, 0, 0).is_finite());
     CHECK_FALSE(TextureTransform(1, 1, 0, 0, -1e39).is_finite());
 }
-
-TEST_CASE("vertices keep the coordinates of the file, and each texture has a transform of its own") {
-    const Folder folder;
-    folder.write("tri.bin", triangle_bytes());
-    const auto moved = [](double scale) {
-        return R"({"index":0,"extensions":{"KHR_texture_transform":{"scale":[)" + std::to_string(scale) + ",1]}}}";
-    };
-    const std::string path =
-        folder.write("t.gltf", gltf(R"([{"mesh":0}])", "[0]",
-                                    R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":)" + moved(2) +
-                                        R"(,"metallicRoughnessTexture":)" + moved(3) + R"(},"emissiveTexture":)" +
-                                        moved(4) + R"(}],"textures":[{"source":0}],"images":[{"uri":"a.png"}])"));
-    Checkpoint checkpoint;
-    const io::FileScene file = io::read_gltf(path, {}, checkpoint);
-    const std::vector<Vec2f>& uvs = file.vertices[0].uvs;
-    REQUIRE(uvs.size() == 3);
-    // v is 1, 1 and 0 in the file, downwards.
-    check_uv(uvs[0], 0, 0);
-    check_uv(uvs[1], 1, 0);
-    check_uv(uvs[2], 0, 1);
-    const auto& material = std::get<io::GltfMaterial>(file.materials[0].content);
-    check_uv(material.base_color_texture.transform(1, 0), 2, 0);
-    check_uv(material.metallic_roughness_texture.transform(1, 0), 3, 0);
-    check_uv(material.emissive_texture.transform(1, 0), 4, 0);
-}

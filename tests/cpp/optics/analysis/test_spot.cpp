@@ -1,14 +1,12 @@
-// Spots: against another program's published run, and against closed forms.
+// Spots against closed forms. tests/truth compares them with a run of OpticStudio.
 
 #include "optics/analysis/spot.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "about.hpp"
 #include "doctest/doctest.h"
-#include "measurement.hpp"
 #include "traced_ray.hpp"
 
 namespace {
@@ -21,34 +19,6 @@ Spot spot(const LensSystem& lens, const FieldPoint& field, std::vector<PupilPoin
 }
 
 }  // namespace
-
-// A published run of OpticStudio: singlet of LAC9, entrance pupil 25 mm, object on the axis, figures of its standard
-// spot diagram about the chief ray, which is the centroid here. Its digits come out with a middle ray and six rings of
-// 6, 12,
-// ... 36 rays at equal distances in the paraxial entrance pupil, up to its edge, all of one weight: without ray aiming
-// the program fills that, and not the stop on the second surface.
-TEST_CASE("axial spots of a singlet as OpticStudio prints them") {
-    const LensSystem bundled = io::read_lens("singlet-100mm");
-    LensSystem lens = lens_of({stop_plane(0, 12.5), bundled.surfaces[0], bundled.surfaces[1]});
-    lens.surfaces[2].thickness = 0;
-    for (Surface& s : lens.surfaces) s.clear_semi_diameter = std::max(s.clear_semi_diameter, 13.0);
-    lens.film_distance = bundled.film_distance;
-    double worst = 0;
-    for (const auto& [wavelength, rms, largest] :
-         {std::tuple(kLineF_nm, 0.032252, 0.046552), std::tuple(kLineD_nm, 0.137509, 0.156289),
-          std::tuple(kLineC_nm, 0.188229, 0.214543)}) {
-        lens.wavelength_nm = wavelength;
-        const Spot s = spot(lens, {}, hexapolar(6));
-        REQUIRE(s.points.size() == 127);
-        worst = std::max(
-            {worst, std::fabs(s.about_centroid.rms_radius - rms), std::fabs(s.about_centroid.max_radius - largest)});
-        CHECK(s.about_chief.rms_radius == about(s.about_centroid.rms_radius, 1e-9));
-    }
-    // An index off by 1e-6, as catalogues round their coefficients, moves the focus by 1.5e-4 mm and the rim of the
-    // spot at f/4.06 by 1.8e-5.
-    hold({"Truth", "axial spots of a singlet as OpticStudio prints them", "RMS and largest radius at F, d, C", "core",
-          "float64", worst, 2e-5, "mm"});
-}
 
 TEST_CASE("a perfect image has no spot, and a defocused one the closed form's") {
     const double f = 100, radius = 80;

@@ -1,5 +1,5 @@
-// Optical path differences: against another program's listing, against perfect surfaces and closed forms, and against
-// the same rays in fifty digits.
+// Optical path differences: against perfect surfaces and closed forms, and against the same rays in fifty digits.
+// tests/truth compares them with a listing of CODE V.
 
 #include "optics/analysis/wavefront.hpp"
 
@@ -9,8 +9,6 @@
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
-#include "optics/analysis/spot.hpp"
-#include "optics/code_v_aberrations.hpp"
 #include "optics/oracle.hpp"
 #include "traced_ray.hpp"
 
@@ -18,8 +16,6 @@ namespace {
 
 using namespace realcam;
 using namespace realcam::test;
-
-constexpr double kDegree = M_PI / 180;
 
 Wavefront wavefront(const LensSystem& lens, const FieldPoint& field, std::vector<PupilPoint> pattern,
                     Removed removed = Removed::nothing, SphereCentre centre = SphereCentre::chief) {
@@ -37,75 +33,6 @@ double largest(const Wavefront& w) {
 }
 
 }  // namespace
-
-TEST_CASE("optical path differences and ray aberrations of the CODE V double Gauss") {
-    LensSystem lens = io::read_lens("double-gauss-100mm");
-    // Clear semi-diameters that do not vignette: the listing has its own vignetting.
-    for (Surface& s : lens.surfaces)
-        if (s.type != SurfaceType::stop) s.clear_semi_diameter = s.curvature == 0 ? 100 : 0.99 / std::fabs(s.curvature);
-    const LensPath<double> path(lens, LightDirection::to_film, lens.wavelength_nm);
-    LensView<double> to_stop = path.view();
-    to_stop.count = lens.stop_index() + 1;
-    double worst_opd = 0, worst_place = 0, worst_chief = 0;
-    int tried = 0;
-    for (const CodeVField& field : code_v_aberrations()) {
-        CAPTURE(field.field_deg);
-        const FieldPoint point{field.field_deg * kDegree};
-        const Vec3d direction{0, std::sin(point.angle_rad), std::cos(point.angle_rad)};
-        std::vector<PupilPoint> places;
-        for (const CodeVAberration& ray : field.rays) {
-            LensRays<double, 1> rays;
-            rays.origin.set(0, {ray.x, ray.y, field.pupil_distance});
-            rays.direction.set(0, direction);
-            rays.status[0] = 0;
-            trace_lens(to_stop, rays, PathRecord<double, 1>{});
-            REQUIRE(rays.status[0] == 0);
-            const double radius = stop_bounding_radius(lens);
-            places.push_back({rays.origin.x[0] / radius, rays.origin.y[0] / radius, 1});
-        }
-        const Wavefront w = wavefront(lens, point, places);
-        const Spot spot = spot_of(w.rays, lens.film_distance);
-        for (std::size_t i = 0; i < field.rays.size(); ++i) {
-            const CodeVAberration& ray = field.rays[i];
-            worst_opd = std::max(worst_opd, std::fabs(w.opd[i] - ray.opd));
-            worst_place = std::max(worst_place, std::fabs(spot.points[i].x - spot.chief.x - ray.dx));
-            worst_place = std::max(worst_place, std::fabs(spot.points[i].y - spot.chief.y - ray.dy));
-            ++tried;
-        }
-        worst_chief = std::max(worst_chief, std::fabs(spot.chief.y - field.chief_height));
-        // The chief ray comes from the middle of the real entrance pupil; X-FOCUS and Y-FOCUS are where rays beside it
-        // cross it.
-        if (field.field_deg > 0) {
-            constexpr double step = 1e-4;
-            const Spot beside = spot_of(
-                field_rays(lens, lens.wavelength_nm, point, {{step, 0, 1}, {-step, 0, 1}, {0, step, 1}, {0, -step, 1}}),
-                lens.film_distance);
-            const auto slope = [&](std::size_t i) {
-                const Vec3d d = beside.rays.rays[i].direction;
-                return i < 2 ? d.x / d.z : d.y / d.z;
-            };
-            const double sagittal = -(beside.points[0].x - beside.points[1].x) / (slope(0) - slope(1));
-            const double tangential = -(beside.points[2].y - beside.points[3].y) / (slope(2) - slope(3));
-            CHECK(std::fabs(sagittal - field.x_focus) < 1e-6);
-            // The listed foci differ from the limit by 2.2e-5 and -1.5e-5: the error, in the presence of coma, of a
-            // one-sided difference with a ray 5e-4 of the pupil above the chief ray.
-            CHECK(std::fabs(tangential - field.y_focus) < 2.5e-5);
-            const AimedRay chief = w.rays.chief;
-            const ObjectPoint object(lens, lens.wavelength_nm, point);
-            const Vec3d at = object.at(chief.entry);
-            CHECK(std::fabs(at.z - at.y / direction.y * direction.z - field.pupil_distance) <= 0.51e-4);
-        }
-    }
-    // Half a unit of the last printed digit. The rays start from the entrance pupil's distance, printed with four
-    // decimals: a hundredth of its half digit is left on the film.
-    const std::string rays = std::to_string(tried) + " rays, 3 fields";
-    hold({"Truth", "optical path differences of a double Gauss as CODE V prints them", rays, "core", "float64",
-          worst_opd, 0.51e-3, "waves"});
-    hold({"Truth", "transverse ray aberrations of a double Gauss as CODE V prints them", rays, "core", "float64",
-          worst_place, 1e-6, "mm"});
-    hold({"Truth", "chief rays on the film of a double Gauss as CODE V prints them", "3 fields", "core", "float64",
-          worst_chief, 0.51e-6, "mm"});
-}
 
 TEST_CASE("what images a point perfectly has no optical path difference") {
     const auto check = [](const char* what, const LensSystem& lens, const FieldPoint& field) {

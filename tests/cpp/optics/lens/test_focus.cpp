@@ -1,4 +1,4 @@
-// Focusing and stopping down, checked with rays that are traced and summed here.
+// Focusing and stopping down: states, travels and refusals. test_hard_focus.cpp has where light is sharpest.
 
 #include <cmath>
 #include <limits>
@@ -15,50 +15,6 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-// RMS distance from the axis, on a plane behind the last vertex, of the rays of an axial object point. The
-// object lies `object_distance` in front of the first vertex; the rays fill the entrance pupil on a spiral,
-// evenly in area.
-double rms_spot(const LensSystem& lens, double object_distance, double plane) {
-    const RayTracer trace(lens, LightDirection::to_film);
-    const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    constexpr int kRays = 3000;
-    double sum = 0;
-    int passed = 0;
-    for (int i = 0; i < kRays; ++i) {
-        const double r = 0.7 * data.entrance_pupil_diameter * std::sqrt((i + 0.5) / kRays);
-        const double azimuth = 2.39996322972865 * i;
-        const Vec3d pupil{r * std::cos(azimuth), r * std::sin(azimuth), data.entrance_pupil_position};
-        const Vec3d object{0, 0, -object_distance};
-        const bool far = std::isinf(object_distance);
-        const TracedRay ray = trace(far ? Vec3d{pupil.x, pupil.y, 0} : object, far ? Vec3d{0, 0, 1} : pupil - object);
-        if (!ray.passed()) continue;
-        const Vec3d hit = ray.at(lens.last_vertex() + plane);
-        sum += hit.x * hit.x + hit.y * hit.y;
-        ++passed;
-    }
-    REQUIRE(passed > 300);
-    return std::sqrt(sum / passed);
-}
-
-void check_best_focus(const LensSystem& lens) {
-    const double object = lens.focus_distance - lens.film_position();  // focus distances are measured from the film
-    const double best = rms_spot(lens, object, lens.film_distance);
-    // The squared spot is a parabola of the plane: its middle lies between two planes that have the same
-    // spot. A hundredth of the diffraction-limited depth of focus, 2 lambda N^2, is 0.05 mm at f/5.6 and
-    // 0.005 at f/2: the steps here are of that size.
-    const double f_number = first_order(lens, lens.wavelength_nm).f_number;
-    const double step = 2 * 0.00055 * f_number * f_number;
-    const double before = rms_spot(lens, object, lens.film_distance - step);
-    const double after = rms_spot(lens, object, lens.film_distance + step);
-    CHECK(before > best);
-    CHECK(after > best);
-    const double a = before * before + after * after - 2 * best * best;
-    const double middle = 0.5 * step * (before * before - after * after) / a;
-    // About half of the focus search's 256 rays pass, so the edge of the pupil is uncertain by 1/250 of its area; with
-    // half a millimetre of spherical aberration, as at f/2 here, that moves the focus by a few um.
-    CHECK(std::fabs(middle) < 0.3 * step);
-}
-
 // Biconvex, nearly thin, so slow that only paraxial rays pass.
 LensSystem nearly_thin_lens() {
     return lens_of(
@@ -66,29 +22,6 @@ LensSystem nearly_thin_lens() {
 }
 
 }  // namespace
-
-TEST_CASE("a thin lens obeys the thin-lens equation") {
-    const double f = 100;  // 1/f = 0.5 (1/100 + 1/100); the thickness adds 1e-3 / 600 of it
-    for (const double focus : {401.0, 500.0, 1000.0, 5000.0, 1e6}) {
-        const LensSystem lens = focused(nearly_thin_lens(), focus);
-        const double image = lens.film_distance, object = focus - image;
-        // 0.001 mm of glass; spherical aberration of f/200 is smaller.
-        CHECK(1 / object + 1 / image == about(1 / f, 2e-5));
-        CHECK(object >= image);  // the photographic one of the two solutions
-        CHECK(lens.focus_distance == focus);
-    }
-    CHECK(focused(nearly_thin_lens(), kInfinity).film_distance == about(f, 2e-5));
-}
-
-TEST_CASE("every bundled lens has its sharpest plane on the film, focused far and near") {
-    for (const std::string& name : centred_lens_names()) {
-        CAPTURE(name);
-        const LensSystem lens = io::read_lens(name);
-        check_best_focus(focused(lens, kInfinity));
-        check_best_focus(focused(lens, near_focus(lens)));
-        check_best_focus(focused(lens, 20 * near_focus(lens)));
-    }
-}
 
 TEST_CASE("refocusing forgets where the lens was focused before") {
     for (const char* name : {"double-gauss-50mm", "telephoto-200mm-inner-focus"}) {

@@ -16,30 +16,6 @@ using namespace realcam::test;
 
 namespace {
 
-/// pi sin^2 of the angles behind the lens between which light comes, by bisected double rays.
-double bisected_irradiance(const LensSystem& lens) {
-    const RayTracer trace(lens, LightDirection::to_scene);
-    const double n = lens.indices(lens.wavelength_nm).back();
-    const auto passes = [&](double sine) {
-        return trace({0, 0, lens.film_position()}, {sine, 0, -std::sqrt(1 - sine * sine)}).passed();
-    };
-    constexpr int kSteps = 4000;
-    double sum = 0;
-    bool before = passes(0);
-    for (int i = 1; i < kSteps; ++i) {
-        const bool here = passes(0.9 * i / kSteps);
-        if (here == before) continue;
-        double low = 0.9 * (i - 1) / kSteps, high = 0.9 * i / kSteps;
-        for (int k = 0; k < 50; ++k) {
-            const double middle = 0.5 * (low + high);
-            (passes(middle) == before ? low : high) = middle;
-        }
-        sum += (before ? 1 : -1) * M_PI * n * n * low * low;
-        before = here;
-    }
-    return sum;
-}
-
 /// A round hole of this radius in front of a film in air.
 LensSystem hole(double radius, double distance) {
     return with_film(lens_of({stop_plane(0, radius)}), distance, distance);

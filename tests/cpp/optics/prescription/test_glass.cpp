@@ -18,12 +18,7 @@ using namespace realcam;
 using namespace realcam::test;
 
 std::string complaint(const std::string& name) {
-    try {
-        io::catalogue_glass(name);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "(no error)";
+    return message_of([&] { io::catalogue_glass(name); });
 }
 
 }  // namespace

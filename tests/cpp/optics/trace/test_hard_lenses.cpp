@@ -4,6 +4,7 @@
 #include "optics/hard_lens_list.hpp"
 #include "optics/hard_rays.hpp"
 #include "optics/prescription/lens_checks.hpp"
+#include "refusal.hpp"
 
 using namespace realcam;
 using namespace realcam::test;
@@ -79,17 +80,12 @@ TEST_CASE("256 surfaces make a lens, 257 do not, and one without a stop neither"
     surfaces.insert(surfaces.begin(), {stop_plane(1, 2), refracting(0, 1, Glass::air(), 5)});
     REQUIRE(surfaces.size() == 256);
     CHECK_NOTHROW(validate(lens_of(surfaces)));
-    const auto complaint = [](const std::vector<Surface>& list) -> std::string {
-        try {
-            validate(lens_of(list));
-        } catch (const LensFileError& error) {
-            return error.what();
-        }
-        return "(no error)";
+    const auto complaint = [](const std::vector<Surface>& list) {
+        return message_of<LensFileError>([&] { validate(lens_of(list)); });
     };
     surfaces.push_back(refracting(0, 0, Glass::air(), 5));
-    CHECK(complaint(surfaces).find("257 surfaces; at most 256 are supported") != std::string::npos);
-    CHECK(complaint({}).find("no surfaces") != std::string::npos);
-    CHECK(complaint({refracting(50, 0, Glass::constant(1.5), 5)}).find("no surface of type") != std::string::npos);
+    CHECK(contains(complaint(surfaces), "257 surfaces; at most 256 are supported"));
+    CHECK(contains(complaint({}), "no surfaces"));
+    CHECK(contains(complaint({refracting(50, 0, Glass::constant(1.5), 5)}), "no surface of type"));
     CHECK(complaint({stop_plane(0, 5)}) == "(no error)");
 }

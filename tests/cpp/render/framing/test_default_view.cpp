@@ -34,34 +34,6 @@ Image grey(int count, float exposure) {
 
 }  // namespace
 
-TEST_CASE("The field angle is that of real rays") {
-    const LensSystem lens = io::read_lens("double-gauss-50mm");
-    CHECK(field_angle(lens, 0) < 1e-6);
-    // Paraxially tan(angle) = height / f; this lens departs from it by less than 2%.
-    CHECK(std::tan(field_angle(lens, 8)) == doctest::Approx(8 / 50.3582).epsilon(0.02));
-    const LensSystem fisheye = io::read_lens("fisheye-6mm-220deg");
-    CHECK(field_angle(fisheye, 11) > std::numbers::pi / 2);
-    CHECK(std::isnan(field_angle(fisheye, 30)));
-}
-
-TEST_CASE("The film takes the shape of the picture") {
-    LensSystem lens = io::read_lens("double-gauss-50mm");
-    const auto check = [&](std::optional<std::array<double, 2>> size, std::optional<std::array<int, 2>> pixels,
-                           Film wanted) {
-        const Film film = default_film(lens, size, pixels);
-        CHECK(film.width_mm == doctest::Approx(wanted.width_mm));
-        CHECK(film.height_mm == doctest::Approx(wanted.height_mm));
-        CHECK(film.width == wanted.width);
-        CHECK(film.height == wanted.height);
-    };
-    check({}, {}, {36, 24, 960, 640});
-    check({{10, 20}}, {}, {10, 20, 480, 960});
-    check({}, {{500, 500}}, {24, 24, 500, 500});
-    check({}, {{200, 300}}, {24, 36, 200, 300});
-    check({{36, 24}}, {{100, 100}}, {36, 24, 100, 100});
-    check({}, {{0, 5}}, {36, 24, 0, 5});
-}
-
 TEST_CASE("A scene without a camera fills nine tenths of the film") {
     Scene scene;
     add_rectangle(scene, 1.5, 0.2, 3);

@@ -190,23 +190,6 @@ TEST_CASE("the part of a ray in the air") {
     CHECK(interval({0, 0, 0}, {0.5f, 1, 0}, kFarAway) == std::pair(0.0f, kFarAway));
 }
 
-TEST_CASE("a bright wall fades with distance by the law of Beer and Lambert") {
-    Worst worst;
-    const Color extinction = {0.05f, 0.1f, 0.4f};
-    for (const double distance : {0.1, 1.0, 7.0, 30.0})
-        for (const int max_bounces : {0, 3}) {
-            CAPTURE(distance);
-            CAPTURE(max_bounces);
-            Scene scene = emitting_box({-50, -50, -distance - 1}, {50, 50, -distance}, {100, 100, 100});
-            // Without scattering, so that only the direct light is left.
-            scene.air = air_of(extinction, {0, 0, 0}, 0.5f);
-            const ColorMean mean = radiance(scene, {{0, 0, 0}, {0, 0, -1}}, max_bounces, 1 << 14);
-            worst.add(mean.r, 100 * std::exp(-0.05 * distance));
-            worst.add(mean.g, 100 * std::exp(-0.1 * distance));
-            worst.add(mean.b, 100 * std::exp(-0.4 * distance));
-        }
-}
-
 TEST_CASE("the interior of glass has no air") {
     // A slab of clear glass that neither reflects nor refracts, 3 m thick, in front of a wall at 10 m.
     Scene scene = emitting_box({-50, -50, -11}, {50, 50, -10}, {100, 100, 100});

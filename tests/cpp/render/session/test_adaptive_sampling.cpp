@@ -211,16 +211,6 @@ TEST_CASE("one half of a tile decides upon the other, within all caps") {
     CHECK(tiles.left() == 128 * 4);
 }
 
-TEST_CASE("goals that are none are refused") {
-    CHECK_THROWS_AS(validate(NoiseGoal{.noise = 0}), InputError);
-    CHECK_THROWS_AS(validate(NoiseGoal{.noise = std::nan("")}), InputError);
-    CHECK_THROWS_AS(validate(NoiseGoal{.max_samples = 0}), InputError);
-    CHECK_THROWS_AS(validate(NoiseGoal{.seconds = -1}), InputError);
-    CHECK_THROWS_AS(goal_of({0.01, 1, {}, {}}), InputError);
-    CHECK(goal_of({0.01, {}, {}, {}}).unit == NoiseUnit::relative);
-    CHECK(goal_of({}) == NoiseGoal{});
-}
-
 // One sample in 2500 hits the light; in most tiles no sample has hit it when eight or sixteen samples are judged to be
 // enough.
 TEST_CASE("stopping does not bias the mean") {

@@ -172,24 +172,6 @@ TEST_CASE("a session prepares what is another picture, and goes on with what is 
     CHECK(next() == std::vector<std::string>{"clear", "take"});
 }
 
-TEST_CASE("a session refuses what makes no picture, and keeps the one that it has") {
-    const Assembly scene(test::bare_scene());
-    const Camera camera = small_camera();
-    NotedSession session;
-    session.set(scene, camera, {.effects = {}});
-    session.add(3);
-    Scene broken = test::bare_scene();
-    broken.triangles[0].vertices[0] = 3;
-    CHECK_THROWS_WITH_AS(session.set(Assembly(broken), camera, {.effects = {}}),
-                         "scene: triangle 0: vertex 3 does not exist; there are 3", InputError);
-    Camera blind = camera;
-    blind.film.width = 0;
-    CHECK_THROWS_AS(session.set(scene, blind, {.effects = {}}), InputError);
-    CHECK_THROWS_AS(session.set(scene, camera, {.max_bounces = -1, .effects = {}}), InputError);
-    CHECK_THROWS_AS(session.add(0), InputError);
-    CHECK(session.picture().spp == 3);
-}
-
 TEST_CASE("samples go on where the last ended, also after a stop; a failure begins anew") {
     const Assembly scene(test::bare_scene());
     const Camera camera = small_camera();
@@ -224,19 +206,6 @@ TEST_CASE("samples go on where the last ended, also after a stop; a failure begi
     session.add(1);
     CHECK(session.notes == kAnew);
     CHECK(session.taken.back().first == 0);
-}
-
-TEST_CASE("a picture is taken from its first sample on") {
-    const Assembly scene(test::bare_scene());
-    const Camera camera = small_camera();
-    NotedSession session;
-    for (int i = 0; i < 2; ++i) {
-        const Image image = take_picture(session, scene, camera, {.spp = 20, .effects = {}}, {});
-        CHECK(image.spp == 20);
-        CHECK(image.stats.seconds >= image.stats.setup_seconds);
-        CHECK(session.taken.back().first == 0);
-    }
-    CHECK_THROWS_AS(take_picture(session, scene, camera, {.spp = 0, .effects = {}}, {}), InputError);
 }
 
 TEST_CASE("as many frames are under way as the device takes") {
