@@ -11,6 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from .._core import InputError, Lens, lens_names
+from ..files import LENS_SUFFIXES
 from . import options
 from .completions import completion_of
 from .shot_options import ring_option
@@ -140,9 +141,6 @@ class Look:
         }
 
 
-SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")  # of supported lens files
-
-
 def add_to_lens_path(folders: Sequence[str] | None) -> None:
     """Inserts folders in front of those of REALCAM_LENS_PATH. Raises InputError if one does not exist."""
     for folder in folders or ():
@@ -159,7 +157,7 @@ def lens_files_on_path() -> dict[str, Path]:
     files: dict[str, Path] = {}
     for folder in filter(None, os.environ.get("REALCAM_LENS_PATH", "").split(":")):
         for path in sorted(Path(folder).iterdir()) if Path(folder).is_dir() else ():
-            if path.suffix.lower() in SUFFIXES and path.is_file():
+            if path.suffix.lower() in LENS_SUFFIXES and path.is_file():
                 files.setdefault(path.stem, path)
     return {name: files[name] for name in sorted(files.keys() - lens_names())}
 
@@ -168,7 +166,7 @@ def default_output(name: str, suffix: str) -> Path:
     """Returns a file name in the current folder for output about a lens. name: lens as the user typed it, because the
     name in a lens file may be any text."""
     file = Path(name)
-    stem = file.stem if file.suffix.lower() in SUFFIXES else file.name
+    stem = file.stem if file.suffix.lower() in LENS_SUFFIXES else file.name
     return Path(f"{stem or 'lens'}{suffix}")
 
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 import typer
 
 from .._core import InputError, Lens, LensFileError, _did_you_mean
-from ..number_text import number_text
+from ..number_text import optics_text
 from .command_words import in_known_spelling
 from .completions import completion_of
 
@@ -142,7 +142,5 @@ def advice_on(error: LensFileError) -> str:
 
 def title_of(lens: Lens) -> str:
     """Returns the title of a plot: the lens, its focal length and its f-number."""
-    data = lens.first_order()
-    focal_length, f_number = number_text(data.effective_focal_length_mm), number_text(lens.f_number, 3)
-    text = f"{lens.title or lens.name}   f = {focal_length} mm, f/{f_number}"
+    text = f"{lens.title or lens.name}   {optics_text(lens)}"
     return "".join(c for c in text if c.isprintable())  # titles come from files and may contain control characters
