@@ -78,7 +78,9 @@ def write(folder: Path) -> None:
         "What ``import realcam as rc`` brings. :doc:`The tour </docs/python>` shows how it is used.\n",
         *(summary(title, "realcam", names) for title, names in GROUPS.items()),
         *(
-            summary(title, name, tuple(n for n in modules[name].__all__ if callable(getattr(modules[name], n))))
+            summary(
+                title, name, tuple(n for n, value in vars(modules[name]).items() if n[0] != "_" and callable(value))
+            )
             for name, title in MODULES.items()
         ),
     ]

@@ -8,7 +8,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from realcam import ImageFileError, InputError, files
-from realcam.drawing.web_page import colour_variables
+from realcam.drawing.web_page import page_top
+from realcam.html_tables import html_table
 
 from . import aberrations, depth_of_field, distortion, double_gauss, interaction, pixel_pupil, snell, speed
 from .experiment import Experiment
@@ -23,6 +24,19 @@ EXPERIMENTS: dict[str, Callable[[str], Experiment]] = {
     "interaction": interaction.experiment,
     "pixel-pupil": pixel_pupil.experiment,
 }
+
+STYLE = """
+body { font: 15px/1.5 sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; }
+body { color: var(--text); background: var(--page); }
+figure { margin: 0; }
+figcaption { font-size: 13px; color: var(--quiet); }
+.figures { display: flex; flex-wrap: wrap; gap: 1em; align-items: end; }
+svg { max-width: 100%; height: auto; }
+table { border-collapse: collapse; margin: 1em 0; }
+td, th { padding: 0.2em 0.8em; text-align: left; border-bottom: 1px solid var(--grid); vertical-align: top; }
+@media print { body { font-size: 9pt; margin: 0; } figure, tr { break-inside: avoid; }
+  h2 { break-after: avoid; } }
+"""
 
 
 def save_page(
@@ -62,38 +76,16 @@ def _section(name: str, experiment: Experiment) -> str:
         )
         parts.append('<div class="figures">' + "\n".join(figures) + "</div>")
     if experiment.rows:
-        cells = [["", "paper", "here"], *([row.quantity, row.paper, row.here] for row in experiment.rows)]
-        if not any(row.paper for row in experiment.rows):
-            cells = [[quantity, here] for quantity, _, here in cells]
-        tags = ["th"] + ["td"] * len(experiment.rows)
-        rows = (
-            "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in row) + "</tr>"
-            for tag, row in zip(tags, cells, strict=True)
-        )
-        parts.append("<table>\n" + "\n".join(rows) + "\n</table>")
+        if any(row.paper for row in experiment.rows):
+            rows = [(row.quantity, row.paper, row.here) for row in experiment.rows]
+            parts.append(html_table(rows, ("", "paper", "here")))
+        else:
+            parts.append(html_table([(row.quantity, row.here) for row in experiment.rows], ("", "here")))
     return "\n".join([*parts, "</section>"])
 
 
 def _page(sections: list[str]) -> str:
-    return f"""<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width">
-<title>The experiments of Liu and Hsu (2013), with realcam</title>
-<style>
-{colour_variables(None)}
-body {{ font: 15px/1.5 sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; }}
-body {{ color: var(--text); background: var(--page); }}
-figure {{ margin: 0; }}
-figcaption {{ font-size: 13px; color: var(--quiet); }}
-.figures {{ display: flex; flex-wrap: wrap; gap: 1em; align-items: end; }}
-svg {{ max-width: 100%; height: auto; }}
-table {{ border-collapse: collapse; margin: 1em 0; }}
-td, th {{ padding: 0.2em 0.8em; text-align: left; border-bottom: 1px solid var(--grid); vertical-align: top; }}
-@media print {{ body {{ font-size: 9pt; margin: 0; }} figure, tr {{ break-inside: avoid; }}
-  h2 {{ break-after: avoid; }} }}
-</style>
-<h1>The experiments of Liu and Hsu (2013), with realcam</h1>
+    return f"""{page_top("The experiments of Liu and Hsu (2013), with realcam", STYLE, None)}
 <p>D. S.-M. Liu and C.-W. Hsu, "Ray-Tracing Based Interactive Camera Simulation", MVA 2013. What the paper shows is
 named by its figure and equation numbers; where it prints a number, that stands beside the one measured here.</p>
 {chr(10).join(sections)}

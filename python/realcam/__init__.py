@@ -19,113 +19,128 @@ try:
     from . import _core as _core
 except ImportError as error:
     raise _advised(error) from None
-from ._core import (
-    PSF,
-    AimedRays,
-    ArgumentError,
-    Camera,
-    CameraKey,
-    CameraRays,
-    Cancelled,
-    Coating,
-    CoatingLayer,
-    CoatingResponse,
-    Device,
-    DeviceArray,
-    DeviceError,
-    EffectInfo,
-    FieldOfView,
-    Film,
-    FilmPupil,
-    FirstOrder,
-    Ghost,
-    Glass,
-    ImageFileError,
-    InputError,
-    Lens,
-    LensFileError,
-    LiveFrame,
-    Material,
-    Meridian,
-    NothingToPlan,
-    Plan,
-    PlanDecision,
-    ProjectionStatus,
-    RayBundle,
-    RayChunks,
-    RayStatus,
-    RealcamError,
-    RenderSettings,
-    RenderStats,
-    Scene,
-    SceneFileError,
-    Seidel,
-    Sensor,
-    Shake,
-    Spot,
-    Surface,
-    TraceResult,
-    Wavefront,
-    __version__,
-    devices,
-    effects,
-    glass_names,
-    lens_names,
-    sensor_names,
-)
-from .autofocus import Autofocus, autofocus
-from .film_part import FilmPart
-from .image import Image
-from .image_file import read_environment
-from .lens import Mirror, Stop
-from .live_view import LiveView
-from .ocio import OcioView
-from .planning import plan
-from .raw_image import RawImage
-from .render import render
-from .session import ReachedNoise, Session
-from .shot import Shot, photograph
+from ._core import PSF as PSF
+from ._core import AimedRays as AimedRays
+from ._core import ArgumentError as ArgumentError
+from ._core import Camera as Camera
+from ._core import CameraKey as CameraKey
+from ._core import CameraRays as CameraRays
+from ._core import Cancelled as Cancelled
+from ._core import Coating as Coating
+from ._core import CoatingLayer as CoatingLayer
+from ._core import CoatingResponse as CoatingResponse
+from ._core import Device as Device
+from ._core import DeviceArray as DeviceArray
+from ._core import DeviceError as DeviceError
+from ._core import EffectInfo as EffectInfo
+from ._core import FieldOfView as FieldOfView
+from ._core import Film as Film
+from ._core import FilmPupil as FilmPupil
+from ._core import FirstOrder as FirstOrder
+from ._core import Ghost as Ghost
+from ._core import Glass as Glass
+from ._core import ImageFileError as ImageFileError
+from ._core import InputError as InputError
+from ._core import Lens as Lens
+from ._core import LensFileError as LensFileError
+from ._core import LiveFrame as LiveFrame
+from ._core import Material as Material
+from ._core import Meridian as Meridian
+from ._core import NothingToPlan as NothingToPlan
+from ._core import Plan as Plan
+from ._core import PlanDecision as PlanDecision
+from ._core import ProjectionStatus as ProjectionStatus
+from ._core import RayBundle as RayBundle
+from ._core import RayChunks as RayChunks
+from ._core import RayStatus as RayStatus
+from ._core import RealcamError as RealcamError
+from ._core import RenderSettings as RenderSettings
+from ._core import RenderStats as RenderStats
+from ._core import Scene as Scene
+from ._core import SceneFileError as SceneFileError
+from ._core import Seidel as Seidel
+from ._core import Sensor as Sensor
+from ._core import Shake as Shake
+from ._core import Spot as Spot
+from ._core import Surface as Surface
+from ._core import TraceResult as TraceResult
+from ._core import Wavefront as Wavefront
+from ._core import __version__ as __version__
+from ._core import devices as devices
+from ._core import effects as effects
+from ._core import glass_names as glass_names
+from ._core import lens_names as lens_names
+from ._core import sensor_names as sensor_names
+from .autofocus import Autofocus as Autofocus
+from .autofocus import autofocus as autofocus
+from .film_part import FilmPart as FilmPart
+from .image import Image as Image
+from .image_file import read_environment as read_environment
+from .lens import Mirror as Mirror
+from .lens import Stop as Stop
+from .live_view import LiveView as LiveView
+from .ocio import OcioView as OcioView
+from .planning import plan as plan
+from .raw_image import RawImage as RawImage
+from .render import render as render
+from .session import ReachedNoise as ReachedNoise
+from .session import Session as Session
+from .shot import Shot as Shot
+from .shot import photograph as photograph
 
 if TYPE_CHECKING:
-    from . import analysis
-    from .accuracy import AccuracyCost, accuracy_cost
-    from .analysis.image_simulation import ImageSimulation, image_simulation
-    from .calibration import Calibration, CalibrationFileError, GeometryError, PointStatus, Vignetting
-    from .derivatives import (
-        Gradient,
-        RayDerivatives,
-        RayGradient,
-        Variable,
-        backpropagate_rays,
-        ray_derivatives,
-    )
-    from .derivatives.picture import render_filtered, render_gradient
-    from .job import Job, JobStatus
-    from .optimisation import (
-        GlassMatch,
-        GlassSearch,
-        Operand,
-        Optimisation,
-        Targets,
-        nearest_glasses,
-        optimised,
-        with_better_glasses,
-    )
-    from .photography import DepthOfField, PhotographicFigures, depth_of_field, photographic_figures
-    from .ray_pairs import RayPairLens
-    from .section import CrossSection, cross_section
-    from .tolerance import (
-        CopyFigures,
-        ElementShift,
-        Sensitivity,
-        Tolerance,
-        Tolerances,
-        ToleranceStudy,
-        random_copy,
-        tolerance_study,
-    )
-    from .vision import CameraModelFit, OpticalFlow, Rig, RigCamera, fit_camera_model, optical_flow, save_colmap
-    from .vision.camera_json import camera_json, save_camera_json
+    from . import analysis as analysis
+    from .accuracy import AccuracyCost as AccuracyCost
+    from .accuracy import accuracy_cost as accuracy_cost
+    from .analysis.image_simulation import ImageSimulation as ImageSimulation
+    from .analysis.image_simulation import image_simulation as image_simulation
+    from .calibration import Calibration as Calibration
+    from .calibration import CalibrationFileError as CalibrationFileError
+    from .calibration import GeometryError as GeometryError
+    from .calibration import PointStatus as PointStatus
+    from .calibration import Vignetting as Vignetting
+    from .derivatives import Gradient as Gradient
+    from .derivatives import RayDerivatives as RayDerivatives
+    from .derivatives import RayGradient as RayGradient
+    from .derivatives import Variable as Variable
+    from .derivatives import backpropagate_rays as backpropagate_rays
+    from .derivatives import ray_derivatives as ray_derivatives
+    from .derivatives.picture import render_filtered as render_filtered
+    from .derivatives.picture import render_gradient as render_gradient
+    from .job import Job as Job
+    from .job import JobStatus as JobStatus
+    from .optimisation import GlassMatch as GlassMatch
+    from .optimisation import GlassSearch as GlassSearch
+    from .optimisation import Operand as Operand
+    from .optimisation import Optimisation as Optimisation
+    from .optimisation import Targets as Targets
+    from .optimisation import nearest_glasses as nearest_glasses
+    from .optimisation import optimised as optimised
+    from .optimisation import with_better_glasses as with_better_glasses
+    from .photography import DepthOfField as DepthOfField
+    from .photography import PhotographicFigures as PhotographicFigures
+    from .photography import depth_of_field as depth_of_field
+    from .photography import photographic_figures as photographic_figures
+    from .ray_pairs import RayPairLens as RayPairLens
+    from .section import CrossSection as CrossSection
+    from .section import cross_section as cross_section
+    from .tolerance import CopyFigures as CopyFigures
+    from .tolerance import ElementShift as ElementShift
+    from .tolerance import Sensitivity as Sensitivity
+    from .tolerance import Tolerance as Tolerance
+    from .tolerance import Tolerances as Tolerances
+    from .tolerance import ToleranceStudy as ToleranceStudy
+    from .tolerance import random_copy as random_copy
+    from .tolerance import tolerance_study as tolerance_study
+    from .vision import CameraModelFit as CameraModelFit
+    from .vision import OpticalFlow as OpticalFlow
+    from .vision import Rig as Rig
+    from .vision import RigCamera as RigCamera
+    from .vision import fit_camera_model as fit_camera_model
+    from .vision import optical_flow as optical_flow
+    from .vision import save_colmap as save_colmap
+    from .vision.camera_json import camera_json as camera_json
+    from .vision.camera_json import save_camera_json as save_camera_json
 
 # Public names by the package of tools that defines them. The packages are imported on first use, because importing them
 # and their libraries takes longer than the core.
@@ -190,124 +205,7 @@ for _type, _name, _package, _function in (
 _core._name_cuda_plugin(_cuda_plugin())
 
 __all__ = [
-    "PSF",
-    "AccuracyCost",
-    "AimedRays",
-    "ArgumentError",
-    "Autofocus",
-    "Calibration",
-    "CalibrationFileError",
-    "Camera",
-    "CameraKey",
-    "CameraModelFit",
-    "CameraRays",
-    "Cancelled",
-    "Coating",
-    "CoatingLayer",
-    "CoatingResponse",
-    "CopyFigures",
-    "CrossSection",
-    "DepthOfField",
-    "Device",
-    "DeviceArray",
-    "DeviceError",
-    "EffectInfo",
-    "ElementShift",
-    "FieldOfView",
-    "Film",
-    "FilmPart",
-    "FilmPupil",
-    "FirstOrder",
-    "GeometryError",
-    "Ghost",
-    "Glass",
-    "GlassMatch",
-    "GlassSearch",
-    "Gradient",
-    "Image",
-    "ImageFileError",
-    "ImageSimulation",
-    "InputError",
-    "Job",
-    "JobStatus",
-    "Lens",
-    "LensFileError",
-    "LiveFrame",
-    "LiveView",
-    "Material",
-    "Meridian",
-    "Mirror",
-    "NothingToPlan",
-    "OcioView",
-    "Operand",
-    "OpticalFlow",
-    "Optimisation",
-    "PhotographicFigures",
-    "Plan",
-    "PlanDecision",
-    "PointStatus",
-    "ProjectionStatus",
-    "RawImage",
-    "RayBundle",
-    "RayChunks",
-    "RayDerivatives",
-    "RayGradient",
-    "RayPairLens",
-    "RayStatus",
-    "ReachedNoise",
-    "RealcamError",
-    "RenderSettings",
-    "RenderStats",
-    "Rig",
-    "RigCamera",
-    "Scene",
-    "SceneFileError",
-    "Seidel",
-    "Sensitivity",
-    "Sensor",
-    "Session",
-    "Shake",
-    "Shot",
-    "Spot",
-    "Stop",
-    "Surface",
-    "Targets",
-    "Tolerance",
-    "ToleranceStudy",
-    "Tolerances",
-    "TraceResult",
-    "Variable",
-    "Vignetting",
-    "Wavefront",
     "__version__",
-    "accuracy_cost",
-    "analysis",
-    "autofocus",
-    "backpropagate_rays",
-    "camera_json",
-    "cross_section",
-    "depth_of_field",
-    "devices",
-    "effects",
-    "fit_camera_model",
-    "glass_names",
-    "image_simulation",
-    "lens_names",
-    "nearest_glasses",
-    "optical_flow",
-    "optimised",
-    "photograph",
-    "photographic_figures",
-    "plan",
-    "random_copy",
-    "ray_derivatives",
-    "read_environment",
-    "render",
-    "render_filtered",
-    "render_gradient",
-    "save_camera_json",
-    "save_colmap",
-    "sensor_names",
-    "tolerance_study",
-    "with_better_glasses",
+    *(n for n, value in globals().items() if n[0] != "_" and getattr(value, "__module__", "").startswith(__name__)),
+    *_PACKAGE_OF,
 ]

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._core import Camera, InputError, Lens, RayStatus, Scene
+from .rec709 import LUMINANCE
 from .session import Session
 
 Array = NDArray[np.float64]
 
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # weights for linear Rec. 709
 TRACED_MODELS = ("full", "full_double", "polynomial")  # camera models with the aberrations of the lens
 MAX_STEPS = 12
 MAX_MAGNIFICATION = 0.9  # focus limit of lenses whose file does not specify a nearest focus

@@ -11,6 +11,8 @@ from pathlib import Path
 
 from ._core import ImageFileError, InputError, _check_no_input, _record_input
 
+LENS_SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")  # of supported lens files
+
 
 def system_name(path: str | os.PathLike[str]) -> bytes:
     """Returns a path as the bytes of the file system. Raises InputError for a null character, at which it would end."""

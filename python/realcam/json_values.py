@@ -17,18 +17,27 @@ def json_text(value: Any) -> str:
     return json.dumps(json_value(value), indent=2, ensure_ascii=False)
 
 
-def json_value(value: Any) -> Any:
-    """Converts a value for json.dumps. Non-finite numbers become None, as in the executable; lenses become names."""
-    if isinstance(value, Lens):
-        return value.name
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return {field.name: json_value(getattr(value, field.name)) for field in dataclasses.fields(value)}
-    if isinstance(value, FieldOfView):
-        return json_value(value._asdict())
-    if isinstance(value, dict):
-        return {key: json_value(entry) for key, entry in value.items()}
-    if isinstance(value, tuple | list | np.ndarray):
-        return [json_value(item) for item in value]
-    if isinstance(value, float | np.floating):
-        return float(value) if math.isfinite(value) else None
-    return value
+def json_value(value: Any, *, has_infinity: bool = False) -> Any:
+    """Converts a value for json.dumps. Non-finite numbers become None, as in the executable; lenses become names.
+
+    has_infinity: infinities become the texts "inf" and "-inf".
+    """
+
+    def converted(value: Any) -> Any:
+        if isinstance(value, Lens):
+            return value.name
+        if dataclasses.is_dataclass(value) and not isinstance(value, type):
+            return {field.name: converted(getattr(value, field.name)) for field in dataclasses.fields(value)}
+        if isinstance(value, FieldOfView):
+            return converted(value._asdict())
+        if isinstance(value, dict):
+            return {key: converted(entry) for key, entry in value.items()}
+        if isinstance(value, np.ndarray | np.generic):
+            return converted(value.tolist())
+        if isinstance(value, tuple | list):
+            return [converted(item) for item in value]
+        if isinstance(value, float) and not math.isfinite(value):
+            return str(value) if has_infinity and math.isinf(value) else None
+        return value
+
+    return converted(value)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import html
 import io
-from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._core import Plan
+from .html_tables import html_table
 from .number_text import number_text, percent_text
 from .ocio import OcioView, develop
 
@@ -41,19 +41,8 @@ def plan_html(plan: Plan) -> str:
         )
         for decision in plan.decisions
     ]
-    table = table_html(rows, ("effect", "", "size", "threshold", "time", "because"))
+    table = html_table(rows, ("effect", "", "size", "threshold", "time", "because"), align="left")
     return f"<p>camera model {html.escape(plan.model)}, {html.escape(plan.summary)}</p>{table}"
-
-
-def table_html(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
-    """Returns an HTML table. head: titles of the columns."""
-
-    def line(cells: Sequence[str], tag: str) -> str:
-        return "".join(f'<{tag} style="text-align: left">{html.escape(cell)}</{tag}>' for cell in cells)
-
-    body = "".join(f"<tr>{line(row, 'td')}</tr>" for row in rows)
-    top = f"<thead><tr>{line(head, 'th')}</tr></thead>" if head else ""
-    return f"<table>{top}<tbody>{body}</tbody></table>"
 
 
 # setattr because the class belongs to the extension.

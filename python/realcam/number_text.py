@@ -26,6 +26,12 @@ def counted(count: int, noun: str) -> str:
     return f"{number_text(count)} {noun}{'' if count == 1 else 's'}"
 
 
+def optics_text(lens: _core.Lens) -> str:
+    """Returns the focal length and the f-number of a lens: "f = 50.36 mm, f/2"; of an afocal one only the first."""
+    focal_length = f"f = {number_text(lens.first_order().effective_focal_length_mm)} mm"
+    return f"{focal_length}, f/{number_text(lens.f_number, 3)}" if math.isfinite(lens.f_number) else focal_length
+
+
 def duration_text(seconds: float) -> str:
     """Formats a duration in the largest unit that gives at least two: 95 seconds, 36 minutes."""
     for size, name in ((86400.0, "day"), (3600.0, "hour"), (60.0, "minute")):

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..image import Image
+from ..rec709 import srgb_of_linear
 
 Codes = NDArray[np.float64]
 
@@ -13,8 +14,8 @@ Codes = NDArray[np.float64]
 def codes(image: Image) -> Codes:
     """Returns the sRGB values of a picture developed with the linear tone curve: (H, W, 3), 0 to 255, not rounded."""
     linear = np.clip(0.018 * image.camera.iso * image.pixels.astype(np.float64), 0, 1)
-    encoded: Codes = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    return 255 * encoded
+    encoded: Codes = 255 * srgb_of_linear(linear)
+    return encoded
 
 
 def mean_square(a: Codes, b: Codes) -> float:

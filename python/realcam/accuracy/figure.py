@@ -13,11 +13,21 @@ from .. import files
 from .._core import ImageFileError
 from ..analysis import style
 from ..drawing.figure_files import figure_bytes
-from ..drawing.web_page import colour_variables, inline_svg
+from ..drawing.web_page import inline_svg, page_top
+from ..html_tables import html_table
 from .error_plot import draw_errors, recommendation
 from .measurements import Measurements
 from .report import tables_of
 
+STYLE = """
+body { font: 14px sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em; background: var(--page);
+  color: var(--text); }
+svg { width: 100%; height: auto; }
+td, th { padding: 0.2em 0.7em; text-align: right; }
+table { margin: 1.5em 0; }
+td:first-child, th:first-child { text-align: left; }
+@media print { body { font-size: 8pt; margin: 0; } svg, table { break-inside: avoid; } }
+"""
 MAX_CODES = 32.0  # difference that is white in the thumbnails
 
 
@@ -71,7 +81,7 @@ def _drawing(cost: Measurements) -> Figure:
 
 
 def _page(cost: Measurements, drawing: str) -> str:
-    tables = "\n".join(f"<table>\n{_rows([title, *heads], rows)}\n</table>" for title, heads, rows in tables_of(cost))
+    tables = "\n".join(html_table(rows, [title, *heads]) for title, heads, rows in tables_of(cost))
     left_out = [
         f"<p>{html.escape(text)}: {html.escape(', '.join(names))}.</p>"
         for text, names in (
@@ -80,21 +90,7 @@ def _page(cost: Measurements, drawing: str) -> str:
         )
         if names
     ]
-    return f"""<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<title>What accuracy costs</title>
-<style>
-{colour_variables(None)}
-body {{ font: 14px sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em; background: var(--page);
-  color: var(--text); }}
-svg {{ width: 100%; height: auto; }}
-td, th {{ padding: 0.2em 0.7em; text-align: right; }}
-table {{ margin: 1.5em 0; }}
-td:first-child, th:first-child {{ text-align: left; }}
-@media print {{ body {{ font-size: 8pt; margin: 0; }} svg, table {{ break-inside: avoid; }} }}
-</style>
-<h1>What accuracy costs</h1>
+    return f"""{page_top("What accuracy costs", STYLE, None)}
 <p>Bias, noise (with the most samples) and errors in 8-bit codes against {html.escape(cost.reference)}, whose own
 noise is {cost.reference_noise_codes:.2g} codes.</p>
 {drawing}
@@ -102,9 +98,3 @@ noise is {cost.reference_noise_codes:.2g} codes.</p>
 {"".join(left_out)}
 </html>
 """
-
-
-def _rows(heads: list[str], rows: list[list[str]]) -> str:
-    cells = ["".join(f"<th>{html.escape(head)}</th>" for head in heads)]
-    cells += ["".join(f"<td>{html.escape(cell)}</td>" for cell in row) for row in rows]
-    return "\n".join(f"<tr>{row}</tr>" for row in cells)

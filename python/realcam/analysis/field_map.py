@@ -169,10 +169,7 @@ def plot_field_map(data: FieldMap, axes: Axes) -> None:
     if data.frequency_per_mm is not None:
         title += f" at {data.frequency_per_mm:.4g}/mm"
     mesh = axes.pcolormesh(data.x_mm, data.y_mm, data.values, shading="gouraud", cmap="viridis")
-    figure = axes.get_figure()
-    assert figure is not None
-    bar = figure.colorbar(mesh, ax=axes, shrink=0.8)
-    bar.set_label(data.unit)
+    style.colour_bar(axes, mesh, data.unit)
     if data.vectors_mm is not None:
         distorted = np.stack(np.meshgrid(data.x_mm, data.y_mm), axis=-1)
         ideal = distorted - data.vectors_mm

@@ -96,7 +96,7 @@ def three_fields(lens: Lens, fields_deg: ArrayLike | None, bundles: Bundles) -> 
     return field_angles_deg(lens, [0, 0.7, 1], bundles) if fields_deg is None else numbers_of(fields_deg, "fields_deg")
 
 
-def three_of(values: Sequence[float], middle: float | None = None) -> Doubles:
+def three_of(values: Sequence[float], middle: float | None = None) -> list[float]:
     """Selects the smallest, a middle and the largest of the values in a lens file, sorted and without duplicates.
 
     middle: None is the value nearest to 0.7 times the largest, or exactly 0.7 times the largest if there is no value in
@@ -106,7 +106,7 @@ def three_of(values: Sequence[float], middle: float | None = None) -> Doubles:
     between = [value for value in values if least < value < largest]
     if middle is None:
         middle = min(between, key=lambda value: abs(value - 0.7 * largest), default=0.7 * largest)
-    return np.unique([least, middle, largest])
+    return sorted({least, middle, largest})
 
 
 def film_points_of(film_mm: ArrayLike) -> list[FieldPosition]:

@@ -18,6 +18,7 @@ from scipy.ndimage import map_coordinates, shift
 from .. import image_file
 from .._core import InputError, Lens, RayBundle, RayStatus, __version__, _film_of_white, develop
 from ..fields import STOP_PROBES
+from ..rec709 import linear_of_srgb
 from ..short_text import ShortText
 
 Doubles = NDArray[np.float64]
@@ -674,8 +675,7 @@ def _linear(picture: ArrayLike | str | os.PathLike[str]) -> Floats:
     if array.dtype.kind == "u":
         if array.dtype.itemsize > 2:
             raise InputError(f"picture must be of uint8, uint16 or floats; its dtype is {array.dtype}")
-        codes = np.arange(256**array.dtype.itemsize) / (256**array.dtype.itemsize - 1)
-        linear: Floats = np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4).astype(np.float32)
+        linear = linear_of_srgb(np.linspace(0, 1, 256**array.dtype.itemsize))
         return np.asarray(linear[array], np.float32)
     if not np.isfinite(array).all():
         raise InputError("picture must hold finite numbers")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -48,9 +48,9 @@ class PlotArguments:
 
     lens: Lens
     bundles: Bundles
-    fields_deg: Doubles | None = None
-    wavelengths_nm: Doubles | None = None
-    frequencies_per_mm: Doubles | None = None
+    fields_deg: Sequence[float] | Doubles | None = None
+    wavelengths_nm: Sequence[float] | Doubles | None = None
+    frequencies_per_mm: Sequence[float] | Doubles | None = None
     method: str | None = None
 
     def field_deg(self, image_height: float) -> float:
@@ -85,7 +85,7 @@ class PlotArguments:
         return {"wavelength_nm": self.wavelength_nm(), "object_distance_m": self.bundles.object_distance_m}
 
 
-def _only_value(values: Doubles | None, name: str) -> float | None:
+def _only_value(values: Sequence[float] | Doubles | None, name: str) -> float | None:
     """The only one of the values; None if none is specified. Raises InputError if there are several."""
     if values is None:
         return None
@@ -154,7 +154,7 @@ def _mtf(arguments: PlotArguments, compute: Callable[..., Any]) -> Any:
         return compute(lens, arguments.frequencies_per_mm, **keywords)
     if compute is mtf_through_focus:
         return compute(lens, arguments.frequency_per_mm(), **keywords)
-    highest = None if arguments.frequencies_per_mm is None else float(arguments.frequencies_per_mm.max())
+    highest = None if arguments.frequencies_per_mm is None else float(max(arguments.frequencies_per_mm))
     return compute(lens, highest_per_mm=highest, **keywords)
 
 

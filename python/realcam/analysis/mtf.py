@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -26,7 +27,20 @@ from .fields import (
 )
 from .pupil_function import lines_of, pupil_function, transfer, transfer_limit
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 METHODS = ("diffraction", "geometric")
+
+
+class MtfOptions(TypedDict, total=False):
+    """Arguments of mtf() that its variants pass on."""
+
+    wavelengths_nm: ArrayLike | None
+    weights: ArrayLike | None
+    method: str
+    object_distance_m: float | None
+    bundles: Bundles | None
 
 
 @dataclass(frozen=True, repr=False)
@@ -194,22 +208,11 @@ def mtf_over_frequency(
     *,
     highest_per_mm: float | None = None,
     samples: int = 97,
-    wavelengths_nm: ArrayLike | None = None,
-    method: str = "diffraction",
-    object_distance_m: float | None = None,
-    bundles: Bundles | None = None,
+    **options: Unpack[MtfOptions],
 ) -> Mtf:
-    """MTF from 0 to highest_per_mm; None is 2.5 times the highest default frequency. Otherwise like mtf()."""
+    """MTF from 0 to highest_per_mm; None is 2.5 times the highest default frequency. options: those of mtf()."""
     top = 2.5 * float(default_frequencies_per_mm(lens)[-1]) if highest_per_mm is None else highest_per_mm
-    return mtf(
-        lens,
-        fields_deg,
-        np.linspace(0, top, checked_samples(samples)),
-        wavelengths_nm=wavelengths_nm,
-        method=method,
-        object_distance_m=object_distance_m,
-        bundles=bundles,
-    )
+    return mtf(lens, fields_deg, np.linspace(0, top, checked_samples(samples)), **options)
 
 
 def mtf_over_field(
@@ -218,23 +221,11 @@ def mtf_over_field(
     *,
     fields_deg: ArrayLike | None = None,
     samples: int = 41,
-    wavelengths_nm: ArrayLike | None = None,
-    method: str = "diffraction",
-    object_distance_m: float | None = None,
-    bundles: Bundles | None = None,
+    **options: Unpack[MtfOptions],
 ) -> Mtf:
-    """MTF at `samples` fields from the axis to the corner of the film. Otherwise like mtf()."""
-    source = bundles_of(lens, object_distance_m, bundles)
-    fields = fields_of(lens, fields_deg, samples, source)
-    return mtf(
-        lens,
-        fields,
-        frequencies_per_mm,
-        wavelengths_nm=wavelengths_nm,
-        method=method,
-        object_distance_m=object_distance_m,
-        bundles=source,
-    )
+    """MTF at `samples` fields from the axis to the corner of the film. options: those of mtf()."""
+    options["bundles"] = source = bundles_of(lens, options.get("object_distance_m"), options.get("bundles"))
+    return mtf(lens, fields_of(lens, fields_deg, samples, source), frequencies_per_mm, **options)
 
 
 def mtf_through_focus(
@@ -244,12 +235,9 @@ def mtf_through_focus(
     fields_deg: ArrayLike | None = None,
     defocus_mm: ArrayLike | None = None,
     samples: int = 41,
-    wavelengths_nm: ArrayLike | None = None,
-    method: str = "diffraction",
-    object_distance_m: float | None = None,
-    bundles: Bundles | None = None,
+    **options: Unpack[MtfOptions],
 ) -> Mtf:
-    """MTF of one frequency through focus. Otherwise like mtf().
+    """MTF of one frequency through focus. options: those of mtf().
 
     frequency_per_mm: None is the middle default frequency. defocus_mm: None is f-number over frequency to either side,
     where a perfect lens has lost its axial contrast.
@@ -260,16 +248,7 @@ def mtf_through_focus(
         if defocus_mm is None
         else numbers_of(defocus_mm, "defocus_mm")
     )
-    return mtf(
-        lens,
-        fields_deg,
-        [frequency],
-        defocus_mm=planes,
-        wavelengths_nm=wavelengths_nm,
-        method=method,
-        object_distance_m=object_distance_m,
-        bundles=bundles,
-    )
+    return mtf(lens, fields_deg, [frequency], defocus_mm=planes, **options)
 
 
 def _add_labels(axes: Axes, title: str, data: Mtf) -> None:

@@ -6,14 +6,13 @@ import csv
 import dataclasses
 import io
 import json
-import math
 import os
 from typing import Any
 
 import numpy as np
 
 from .. import files
-from .._core import InputError
+from ..json_values import json_value
 
 FORMATS = (".json", ".csv")
 
@@ -21,7 +20,7 @@ FORMATS = (".json", ".csv")
 def as_json(data: Any) -> str:
     """Returns a JSON object with all fields of a result, a dataclass, by their names; arrays become lists. nan becomes
     null and infinities become strings, because JSON has neither."""
-    return json.dumps({f.name: _plain(getattr(data, f.name)) for f in dataclasses.fields(data)}, indent=1)
+    return json.dumps(json_value(data, has_infinity=True), indent=1)
 
 
 def as_csv(data: Any) -> str:
@@ -41,8 +40,7 @@ def as_csv(data: Any) -> str:
 def save_numbers(data: Any, path: str | os.PathLike[str]) -> None:
     """Writes a result as .json or .csv, completely or not at all.
 
-    Raises ImageFileError for another suffix or a file that cannot be written, and InputError for data without a form
-    in the format.
+    Raises ImageFileError for another suffix or a file that cannot be written.
     """
     target = files.check_target(path, FORMATS)
     text = as_json(data) + "\n" if target.suffix.lower() == ".json" else as_csv(data)
@@ -54,18 +52,3 @@ def _is_numeric(value: Any) -> bool:
         return np.asarray(value).dtype.kind in "fiu"
     except ValueError:  # arrays of different lengths
         return False
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    if isinstance(value, (np.floating, float)):
-        number = float(value)
-        return None if math.isnan(number) else number if math.isfinite(number) else str(number)
-    if isinstance(value, (np.integer, int)):
-        return int(value)
-    if value is None or isinstance(value, str):
-        return value
-    raise InputError(f"{type(value).__name__} cannot be written as JSON")

@@ -11,7 +11,7 @@ import matplotlib.figure
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.image import AxesImage
+from matplotlib.cm import ScalarMappable
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from numpy.typing import NDArray
 
@@ -130,7 +130,7 @@ def legend_beside(axes: Axes, **options: Any) -> None:
     axes.legend(**{"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), **options})
 
 
-def colour_bar(axes: Axes, picture: AxesImage, label: str) -> None:
+def colour_bar(axes: Axes, picture: ScalarMappable, label: str) -> None:
     """Adds the colour scale of a picture beside its axes."""
     figure = axes.get_figure()
     assert figure is not None

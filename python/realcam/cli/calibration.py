@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -16,8 +16,8 @@ app = typer.Typer(help="Show and convert calibrations of cameras.", rich_markup_
 File = Annotated[Path, typer.Argument(help="A calibration file; docs/calibration.md lists the formats", metavar="FILE")]
 CameraName = Annotated[str | None, typer.Option("--camera", metavar="NAME", help="One of several cameras of the file")]
 Size = Annotated[
-    str | None,
-    typer.Option("--size", metavar="WxH", help="Size of the picture in pixels, for formats that do not state it"),
+    Any,
+    options.parsed(options.size, "--size", "WxH", "Size of the picture in pixels, for formats that do not state it"),
 ]
 
 
@@ -27,9 +27,9 @@ def show(file: File, camera: CameraName = None, size: Size = None, as_json: opti
     from ..calibration import Calibration
 
     if camera is None:
-        found = Calibration.load_all(file, size=_size(size))
+        found = Calibration.load_all(file, size=size)
     else:
-        found = {camera: Calibration.load(file, camera, size=_size(size))}
+        found = {camera: Calibration.load(file, camera, size=size)}
     if as_json:
         typer.echo(
             json_text(
@@ -72,16 +72,16 @@ def convert(
     output: Annotated[Path, typer.Argument(help="The file to write, such as camera_info.yaml", metavar="OUT")],
     camera: CameraName = None,
     size: Size = None,
-    to: Annotated[str | None, typer.Option("--to", metavar="FORMAT", help="Format of the output [by its name]")] = None,
+    to: Annotated[str | None, typer.Option(metavar="FORMAT", help="Format of the output [by its name]")] = None,
     quiet: options.Quiet = False,
 ) -> None:
     """Convert a calibration file to another format."""
     from ..calibration import Calibration
 
     if camera is None:
-        Calibration.save_all(output, Calibration.load_all(file, size=_size(size)), to)
+        Calibration.save_all(output, Calibration.load_all(file, size=size), to)
     else:
-        Calibration.load(file, camera, size=_size(size)).save(output, to)
+        Calibration.load(file, camera, size=size).save(output, to)
     options.say_written(output, quiet)
 
 
@@ -89,7 +89,7 @@ def convert(
 def undistort(
     file: File,
     picture: Annotated[Path, typer.Argument(help="A picture of this camera", metavar="PICTURE")],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="The picture to write")],
+    output: Annotated[Path, options.output("The picture to write")],
     camera: CameraName = None,
     size: Size = None,
     quiet: options.Quiet = False,
@@ -105,7 +105,7 @@ def undistort(
     check_target(output, DEVELOPED)
     values = read_picture(picture)
     height, width = values.shape[:2]
-    calibration = Calibration.load(file, camera, size=_size(size))
+    calibration = Calibration.load(file, camera, size=size)
     if calibration.size != (width, height):
         raise InputError(
             f"{picture}: has {width} x {height} pixels, but the calibration is of {calibration.size[0]} x "
@@ -113,13 +113,3 @@ def undistort(
         )
     write_codes(srgb_codes(np.nan_to_num(calibration.undistort(values)).astype(np.float32)), output, {})
     options.say_written(output, quiet)
-
-
-def _size(text: str | None) -> tuple[int, int] | None:
-    """Returns (width, height) of a text such as 1920x1080. Raises InputError."""
-    if text is None:
-        return None
-    words = text.split("x")
-    if len(words) != 2 or not all(word.isascii() and word.isdigit() for word in words):
-        raise InputError(f'--size: "{text:.40}": expected the width and height in pixels, such as 1920x1080')
-    return int(words[0]), int(words[1])

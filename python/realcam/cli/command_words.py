@@ -15,6 +15,7 @@ from pathlib import Path
 from .. import _core
 from .._core import InputError, lens_names
 from ..bundled_scenes import SCENE_SUFFIXES, bundled_file, shot_names
+from ..files import LENS_SUFFIXES
 
 _LENGTHS_M = {
     **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), "1"),
@@ -151,7 +152,7 @@ _WRITTEN = (
 # Suffixes of files that commands read, by the placeholder of an argument.
 _READ = {
     "SCENE": (*SCENE_SUFFIXES, ".toml"),
-    "LENS": (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa"),
+    "LENS": LENS_SUFFIXES,
     "FILM": (".exr",),
     "RECIPE": (".toml",),
 }

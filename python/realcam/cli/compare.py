@@ -35,13 +35,10 @@ def compare(
         str,
         typer.Option(metavar="NAME=VALUE,...", help="f_number=2,4,8, lens=NAME,... (or files), or zoom=POSITION,..."),
     ],
-    output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FILE", help="The sheet, as .png, .jpg, .tif, .webp, .svg or .pdf")
-    ],
+    output: Annotated[Path, options.output("The sheet, as .png, .jpg, .tif, .webp, .svg or .pdf")],
     changes: ShotOptions,  # type: ignore[valid-type]
     f_number: Annotated[
-        float | None,
-        typer.Option("--f-number", metavar="N", help="f-number of all pictures, with the brightness of the shot"),
+        float | None, typer.Option(metavar="N", help="f-number of all pictures, with the brightness of the shot")
     ] = None,
     size: Annotated[
         int, typer.Option(metavar="PIXELS", help="Pixels of the longer side of each picture", min=8, max=4096)

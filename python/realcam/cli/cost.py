@@ -27,13 +27,7 @@ def cost(
     shot: options.ShotName,
     changes: ShotOptions,  # type: ignore[valid-type]
     output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="FILE",
-            help="Error over time as .svg, or as .html with the table; may be repeated",
-        ),
+        list[Path] | None, options.output("Error over time as .svg, or as .html with the table; may be repeated")
     ] = None,
     size: Annotated[int, typer.Option(metavar="PIXELS", help="Pixels of the longer side", min=8, max=4096)] = 320,
     max_spp: Annotated[

@@ -19,7 +19,7 @@ from ..progress import progress_bar
 from . import options
 from .completions import completion_of
 from .grouped_options import grouped
-from .work_options import FarmOptions, PartText, Scheduler, check_single, farm_files, part_of, write_farm_files
+from .work_options import FarmOptions, PartOption, Scheduler, check_single, farm_files, write_farm_files
 
 if TYPE_CHECKING:
     from ..job.farm_files import FarmWork
@@ -28,26 +28,17 @@ if TYPE_CHECKING:
 @grouped
 def dataset(
     recipe: Annotated[Path, typer.Argument(help="Recipe of the data set, .toml (docs/datasets.md)", metavar="RECIPE")],
-    output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FOLDER", help="Folder of the shards; existing ones are kept")
-    ],
+    output: Annotated[Path, options.output("Folder of the shards; existing ones are kept", "FOLDER")],
     farm: FarmOptions,
-    count: Annotated[
-        int | None, typer.Option("--count", metavar="N", help="Number of pictures [the recipe's]", min=1)
-    ] = None,
+    count: Annotated[int | None, typer.Option(metavar="N", help="Number of pictures [the recipe's]", min=1)] = None,
     workers: Annotated[
-        int | None,
-        typer.Option("--workers", metavar="N", help="Processes [one for each core; one for a GPU]", min=1, max=4096),
+        int | None, typer.Option(metavar="N", help="Processes [one for each core; one for a GPU]", min=1, max=4096)
     ] = None,
-    part: PartText = None,
+    part: PartOption = None,
     threads: Annotated[
         int | None,
         typer.Option(
-            "--threads",
-            metavar="N",
-            help="Threads of each process; 0: all cores [1; all with --part or a GPU]",
-            min=0,
-            max=4096,
+            metavar="N", help="Threads of each process; 0: all cores [1; all with --part or a GPU]", min=0, max=4096
         ),
     ] = None,
     scheduler: Scheduler = None,
@@ -85,15 +76,14 @@ def dataset(
             executor = stack.enter_context(dask_executor(workers=workers or 1, scheduler=scheduler))
         elif workers is not None:
             executor = stack.enter_context(ProcessPoolExecutor(workers, mp_context=get_context("spawn")))
-        part_numbers = part_of(part)
-        index = make(loaded, output, executor, part=part_numbers, threads=threads, device=device, progress=report)
+        index = make(loaded, output, executor, part=part, threads=threads, device=device, progress=report)
     is_complete = index.exists()
     if as_json:
         typer.echo(json_text({"index": os.fspath(index) if is_complete else None, "pictures": loaded.count}))
     elif is_complete:
         options.say_written(index, quiet)
     elif not quiet:
-        typer.echo(f"{output}: part {part} of {counted(loaded.count, 'picture')} is done")
+        typer.echo(f"{output}: part {part[0]}/{part[1]} of {counted(loaded.count, 'picture')} is done")
 
 
 def work_of_dataset(recipe: Path, folder: Path, count: int | None, device: str) -> FarmWork:

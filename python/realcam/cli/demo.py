@@ -22,7 +22,7 @@ from . import options
 def demo(
     output: Annotated[
         Path,
-        typer.Option("--output", "-o", metavar="FOLDER", help="Folder for the pictures; created if it is missing"),
+        options.output("Folder for the pictures; created if it is missing", "FOLDER"),
     ] = Path("realcam-demo"),
     spp: Annotated[
         int | None,

@@ -23,11 +23,10 @@ from .grouped_options import grouped
 from .shot_options import load_shot, shot_options
 from .work_options import (
     FarmOptions,
-    PartText,
+    PartOption,
     Scheduler,
     check_single,
     farm_files,
-    part_of,
     write_farm_files,
 )
 
@@ -42,29 +41,33 @@ Fps = Annotated[float, typer.Option("--fps", metavar="N", help="Frames per secon
 ShotOptions = shot_options("ShotOptions", without=("threads",))  # the number of threads is set for each process
 
 
+def _tile(text: str, option: str) -> tuple[int, int]:
+    """Converts the width and height of a tile in pixels, 128 or 128x64. Raises InputError."""
+    sides = options.whole_numbers(text, option, "x", 1, 2)
+    return sides[0], sides[-1]
+
+
 @app.command()
 @grouped
 def make(
     shots: Annotated[
         list[Path], typer.Argument(help="Shot files (.toml), scene files, or bundled shots", metavar="SCENE")
     ],
-    output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FOLDER", help="Folder of the job; it must not exist yet")
-    ],
+    output: Annotated[Path, options.output("Folder of the job; it must not exist yet", "FOLDER")],
     changes: ShotOptions,  # type: ignore[valid-type]
     farm: FarmOptions,
     device: options.Device = "auto",
     frames: Annotated[
-        str | None,
-        typer.Option("--frames", metavar="A-B", help="Frames of a video, 1-240 or 1-240x2"),
+        range | None, options.parsed(options.frame_numbers, "--frames", "A-B", "Frames of a video, 1-240 or 1-240x2")
     ] = None,
     fps: Fps = 24.0,
     tile: Annotated[
-        str | None,
-        typer.Option(
+        Any,
+        options.parsed(
+            _tile,
             "--tile",
-            metavar="PIXELS",
-            help="Size of a unit of work, 128 or 128x64, in steps of 32 [about a second on one core]",
+            "PIXELS",
+            "Size of a unit of work, 128 or 128x64, in steps of 32 [about a second on one core]",
         ),
     ] = None,
     quiet: options.Quiet = False,
@@ -78,17 +81,16 @@ def make(
     from ..job.making import check_is_new
 
     check_is_new(output)
-    size, numbers = _tile(tile), None if frames is None else options.frame_numbers(frames)
     written = farm_files(farm, work_of_job(output))
     named = _named_shots(shots, changes, device)
     files.check_targets(written)
-    if numbers is not None:
+    if frames is not None:
         named = {
             frame: shot
             for name, still in named.items()
-            for frame, shot in still.frames(numbers, frames_per_second=fps, name=name, device=device).items()
+            for frame, shot in still.frames(frames, frames_per_second=fps, name=name, device=device).items()
         }
-    job = Job.make(output, named, device=device, tile=size)
+    job = Job.make(output, named, device=device, tile=tile)
     if not quiet:
         made = job.status()
         units = "units as the noise requires them" if made.is_adaptive else counted(made.units_known, "unit")
@@ -99,10 +101,9 @@ def make(
 @app.command()
 def work(
     folder: Folder,
-    part: PartText = None,
+    part: PartOption = None,
     workers: Annotated[
-        int | None,
-        typer.Option("--workers", metavar="N", help="Number of processes [one for each 4 cores]", min=1, max=10000),
+        int | None, typer.Option(metavar="N", help="Number of processes [one for each 4 cores]", min=1, max=10000)
     ] = None,
     threads: options.Threads = 0,
     here: Annotated[bool, typer.Option("--here", help="Render in this process alone, without Dask")] = False,
@@ -110,9 +111,7 @@ def work(
     device: Annotated[
         str | None,
         typer.Option(
-            "--device",
-            metavar="DEVICE",
-            help="Device of this process, such as cuda:1, if a job is for GPUs; requires --here",
+            metavar="DEVICE", help="Device of this process, such as cuda:1, if a job is for GPUs; requires --here"
         ),
     ] = None,
     quiet: options.Quiet = False,
@@ -129,10 +128,10 @@ def work(
     logging.disable(logging.CRITICAL)  # Dask logs every closed connection; the job reports the errors that matter
     if device is not None and not is_single:
         raise InputError("--device is for one process; use it together with --here")
-    numbers, job = part_of(part), Job.load(folder)
+    job = Job.load(folder)
     with progress_bar(f"{folder}", is_shown=not quiet) as bar:
         if is_single or not (has_dask() or scheduler or workers):
-            job.work(part=numbers, threads=threads, device=device, progress=bar)
+            job.work(part=part, threads=threads, device=device, progress=bar)
         else:
             cores = len(os.sched_getaffinity(0))
             count = workers or max(1, cores // 4)
@@ -140,7 +139,7 @@ def work(
                 share = threads or (max(1, cores // count) if scheduler is None else 0)
                 job.work(executor, threads=share, progress=bar)
     if not quiet:
-        done = f"the units of part {part}" if part and not job.status().is_done else "all units"
+        done = f"the units of part {part[0]}/{part[1]}" if part and not job.status().is_done else "all units"
         typer.echo(f"{folder}: {done} are done; realcam job finish {folder} -o FILE makes the pictures")
 
 
@@ -173,21 +172,17 @@ def finish(
     folder: Folder,
     output: Annotated[
         list[Path],
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="FILE",
-            help="For one picture: a file .exr, .png, .jpg, .tif or .webp, may be repeated; for several: a folder, or "
-            "a video, .mp4",
+        options.output(
+            "For one picture: a file .exr, .png, .jpg, .tif or .webp, may be repeated; for several: a folder, or "
+            "a video, .mp4"
         ),
     ],
     format: Annotated[
-        str, typer.Option("--format", metavar="NAME", help="Format of pictures in a folder: exr, png, jpg, tif or webp")
+        str, typer.Option(metavar="NAME", help="Format of pictures in a folder: exr, png, jpg, tif or webp")
     ] = "exr",
     fps: Fps = 24.0,
     device: Annotated[
-        str | None,
-        typer.Option("--device", metavar="DEVICE", help="Device for layers without samples [that of the job]"),
+        str | None, typer.Option(metavar="DEVICE", help="Device for layers without samples [that of the job]")
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
@@ -237,14 +232,3 @@ def _named_shots(paths: list[Path], changes: Any, device: str) -> dict[str, Shot
             raise InputError(f"{path}: two shots are called {path.stem}; use other names")
         shots[path.stem] = load_shot(path, changes, device)
     return shots
-
-
-def _tile(text: str | None) -> tuple[int, int] | None:
-    """Converts the width and height of a tile in pixels. Raises InputError."""
-    if text is None:
-        return None
-    across, _, down = text.partition("x")
-    down = down or across
-    if not (across.isdecimal() and down.isdecimal()):
-        raise InputError(f'--tile: "{text:.40}": expected pixels, 128 or 128x64')
-    return int(across), int(down)

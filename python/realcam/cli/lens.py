@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,7 +23,6 @@ from . import (
     options,
 )
 from .commands_in_cpp import add_command_in_cpp
-from .completions import completion_of
 from .grouped_options import grouped
 
 app = typer.Typer(help="Inspect, compare, convert and improve lenses.", rich_markup_mode=None)
@@ -52,10 +52,7 @@ def draw(
     name: lens_options.LensName,
     *,
     output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", metavar="FILE", help="A .svg, .pdf, .png, .jpg, .tif or .webp file [LENS.svg, here]"
-        ),
+        Path | None, options.output("A .svg, .pdf, .png, .jpg, .tif or .webp file [LENS.svg, here]")
     ] = None,
     rings: lens_options.Rings,
     plane: Annotated[
@@ -63,8 +60,16 @@ def draw(
     ] = "yz",
     rays: lens_options.Rays = 7,
     rays_from: lens_options.RaysFrom = "object",
-    fields: lens_options.Fields = "0,0.7,1",
-    fields_deg: lens_options.FieldsDeg = None,
+    fields: Annotated[
+        Sequence[float] | None,
+        options.parsed(
+            options.numbers, "--fields", "SHARES", "Field points, as fractions of the film's half diagonal [0,0.7,1]"
+        ),
+    ] = None,
+    fields_deg: Annotated[
+        Sequence[float] | None,
+        lens_options.fields_option("Field points as angles in front of the lens, instead of --fields"),
+    ] = None,
     look: lens_options.Look,
     insets: Annotated[bool, typer.Option(help="Show the rays at the film magnified")] = True,
     states: Annotated[
@@ -83,7 +88,7 @@ def draw(
 
     if states not in ("one", "rows", "ghost"):
         raise InputError(f'--states: "{states:.40}" is unknown; expected one, rows or ghost')
-    if states == "rows" and (rings.focus is not None or fields_deg is not None):
+    if states == "rows" and (rings.focus_m is not None or fields_deg is not None):
         raise InputError(
             "--states rows shows focus states or zoom positions, with fields relative to the film's corner: --focus "
             "and --fields-deg cannot be combined with it"
@@ -94,7 +99,7 @@ def draw(
     drawn: dict[str, Any] = {
         "rays": rays,
         "rays_from": rays_from,
-        "fields": lens_options.numbers(fields, "--fields"),
+        "fields": fields or (0, 0.7, 1),
         "insets": insets,
         **look.arguments(),
     }
@@ -106,8 +111,7 @@ def draw(
             if not lens.nearest_focus_m > 0:
                 raise InputError(f'--states ghost: the file of lens "{lens.name}" does not specify a nearest focus')
             ghost = lens.focused(lens.nearest_focus_m)
-        angles = lens_options.numbers(fields_deg, "--fields-deg")
-        save_cross_section(lens, target, plane=plane, fields_deg=angles, ghost=ghost, **drawn)
+        save_cross_section(lens, target, plane=plane, fields_deg=fields_deg, ghost=ghost, **drawn)
     options.say_written(target, quiet)
 
 
@@ -119,14 +123,15 @@ def photo(
     rings: lens_options.Rings,
     circle: Circle = None,
     exposure_time: Annotated[
-        str | None,
-        typer.Option(
+        float | None,
+        options.parsed(
+            options.seconds,
             "--exposure-time",
-            metavar="TIME",
-            help="Exposure time in seconds, 1/125 or 0.008; prints exposure values, too",
+            "TIME",
+            "Exposure time in seconds, 1/125 or 0.008; prints exposure values, too",
         ),
     ] = None,
-    iso: Annotated[float, typer.Option("--iso", metavar="ISO", help="Sensitivity, for exposure values")] = 100.0,
+    iso: Annotated[float, typer.Option(metavar="ISO", help="Sensitivity, for exposure values")] = 100.0,
     file: lens_options.File,
     as_json: AsJson = False,
     quiet: options.Quiet = False,
@@ -140,7 +145,7 @@ def photo(
     figures = photographic_figures(
         lens,
         circle_of_confusion_mm=circle,
-        exposure_time_s=None if exposure_time is None else lens_options.seconds(exposure_time),
+        exposure_time_s=exposure_time,
         iso=iso,
     )
     if as_json:
@@ -153,20 +158,20 @@ def photo(
 @grouped
 def compare(
     first: lens_options.LensName,
-    second: Annotated[str, typer.Argument(help="Another lens", metavar="LENS", autocompletion=completion_of("LENS"))],
+    second: Annotated[str, lens_options.lens_argument("Another lens")],
     *,
     output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", metavar="FILE", help="Drawing of both at one scale: .svg, .pdf, .png, .jpg, .tif or .webp"
-        ),
+        Path | None, options.output("Drawing of both at one scale: .svg, .pdf, .png, .jpg, .tif or .webp")
     ] = None,
     rings: lens_options.Rings,
     circle: Circle = None,
     mtf: Annotated[
-        str | None,
-        typer.Option(
-            "--mtf", metavar="PER_MM", help="Frequencies of the MTF in periods per mm: 10,30. Takes seconds [no MTF]"
+        Sequence[float] | None,
+        options.parsed(
+            options.numbers,
+            "--mtf",
+            "PER_MM",
+            "Frequencies of the MTF in periods per mm: 10,30. Takes seconds [no MTF]",
         ),
     ] = None,
     look: lens_options.Look,
@@ -183,10 +188,7 @@ def compare(
         from ..drawing.figure_files import check_figure_target
 
         lens_options.check_not_the_lens(check_figure_target(output), first, second)
-    frequencies = lens_options.numbers(mtf, "--mtf") or []
-    summaries = [
-        lens_summary(lens, mtf_frequencies_per_mm=frequencies, circle_of_confusion_mm=circle) for lens in lenses
-    ]
+    summaries = [lens_summary(lens, mtf_frequencies_per_mm=mtf or (), circle_of_confusion_mm=circle) for lens in lenses]
     if as_json:
         typer.echo(json_text(summaries))
     elif not quiet:
@@ -204,9 +206,7 @@ def compare(
 def convert(
     name: lens_options.LensName,
     *,
-    output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FILE", help="A .toml, .zmx, .seq, .json, .roa or .osl file")
-    ],
+    output: Annotated[Path, options.output("A .toml, .zmx, .seq, .json, .roa or .osl file")],
     zoom: lens_options.Zoom = None,
     file: lens_options.File,
     quiet: options.Quiet = False,
@@ -220,9 +220,7 @@ def convert(
 @app.command("blender")
 def blender(
     names: lens_options.LensNames = None,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .zip file")] = Path(
-        "realcam-lenses.zip"
-    ),
+    output: Annotated[Path, options.output("A .zip file")] = Path("realcam-lenses.zip"),
     quiet: options.Quiet = False,
 ) -> None:
     """Write an extension for Blender 5 with lenses as cameras of Cycles. All lenses take some minutes."""
@@ -239,9 +237,7 @@ def blender(
 def gallery(
     names: lens_options.LensNames = None,
     *,
-    output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FILE", help="A .png, .jpg, .tif, .webp, .svg or .pdf file")
-    ] = Path("lenses.png"),
+    output: Annotated[Path, options.output("A .png, .jpg, .tif, .webp, .svg or .pdf file")] = Path("lenses.png"),
     columns: Annotated[int, typer.Option(metavar="N", help="Drawings side by side", min=1, max=50)] = 6,
     theme: lens_options.ThemeName = "light",
     file: lens_options.File,

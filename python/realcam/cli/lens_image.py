@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from .._core import InputError
 from ..image_file import DEVELOPED
 from ..progress import progress_bar
 from . import lens_options, lens_plots, options
@@ -21,46 +21,44 @@ def image(
         Path, typer.Argument(help="A .png, .jpg, .tif, .webp, .bmp, .exr or .hdr file", metavar="PICTURE")
     ],
     *,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .png, .jpg, .tif or .webp file")],
+    output: Annotated[Path, options.output("A .png, .jpg, .tif or .webp file")],
     rings: lens_options.Rings,
     object_distance: lens_plots.ObjectDistance = None,
     height_deg: Annotated[
-        float | None,
-        typer.Option("--height-deg", metavar="DEGREES", help="Angle that the picture's height spans [fits the film]"),
+        float | None, typer.Option(metavar="DEGREES", help="Angle that the picture's height spans [fits the film]")
     ] = None,
     height: Annotated[
         float | None,
-        typer.Option(
-            "--height", metavar="METRES", help="Height of the picture in metres, for an object at a finite distance"
-        ),
+        typer.Option(metavar="METRES", help="Height of the picture in metres, for an object at a finite distance"),
     ] = None,
     projection: Annotated[
         str | None,
         typer.Option(
-            "--projection",
             metavar="NAME",
             help="tangent (r = f tan): a flat object; angle (r = f theta): distances from the picture's centre are "
             "field angles [angle beyond 70 degrees]",
         ),
     ] = None,
     resolution: Annotated[
-        str | None, typer.Option("--resolution", metavar="WxH", help="Number of pixels of the film [as the picture]")
+        Sequence[int] | None,
+        options.parsed(options.size, "--resolution", "WxH", "Number of pixels of the film [as the picture]"),
     ] = None,
-    pixel: Annotated[
-        float | None, typer.Option("--pixel", metavar="UM", help="Pixel pitch in um [fits the film]")
-    ] = None,
+    pixel: Annotated[float | None, typer.Option(metavar="UM", help="Pixel pitch in um [fits the film]")] = None,
     crop: Annotated[
-        str | None,
-        typer.Option(
-            "--crop", metavar="X,Y,W,H", help="Part of the film to compute, in pixels: left, top, width, height [all]"
+        Sequence[int] | None,
+        options.parsed(
+            options.whole_numbers,
+            "--crop",
+            "X,Y,W,H",
+            "Part of the film to compute, in pixels: left, top, width, height [all]",
+            ",",
+            4,
         ),
     ] = None,
     flip: Annotated[
         str,
         typer.Option(
-            "--flip",
-            metavar="NAME",
-            help="none, horizontal, vertical, or both: upside down and mirrored, as on the film",
+            metavar="NAME", help="none, horizontal, vertical, or both: upside down and mirrored, as on the film"
         ),
     ] = "none",
     falloff: Annotated[bool, typer.Option(help="Include relative illumination")] = True,
@@ -68,11 +66,14 @@ def image(
         bool, typer.Option("--psfs", help="Put a grid of point spread functions to the right of the picture")
     ] = False,
     psf_grid: Annotated[
-        str, typer.Option("--psf-grid", metavar="XxY", help="Number of point spread functions computed over the film")
-    ] = "7x5",
+        Sequence[int] | None,
+        options.parsed(
+            options.size, "--psf-grid", "XxY", "Number of point spread functions computed over the film [7x5]"
+        ),
+    ] = None,
     wavelengths: Annotated[
-        str | None,
-        typer.Option("--wavelengths", metavar="NM", help="Wavelengths in nm, separated by commas [440 to 640]"),
+        Sequence[float] | None,
+        lens_options.wavelengths_option("Wavelengths in nm, separated by commas [440 to 640]"),
     ] = None,
     file: lens_options.File,
     quiet: options.Quiet = False,
@@ -90,23 +91,15 @@ def image(
             height_deg=height_deg,
             height_m=height,
             projection=projection,
-            object_distance_m=None if object_distance is None else options.number(object_distance, "--object-distance"),
-            resolution=None if resolution is None else _whole_numbers(resolution, "--resolution", "x", 2),
+            object_distance_m=object_distance,
+            resolution=resolution,
             pixel_um=pixel,
-            crop=None if crop is None else _whole_numbers(crop, "--crop", ",", 4),
+            crop=crop,
             flip=flip,
             falloff=falloff,
-            psf_grid=_whole_numbers(psf_grid, "--psf-grid", "x", 2),
-            wavelengths_nm=lens_options.numbers(wavelengths, "--wavelengths"),
+            psf_grid=psf_grid or (7, 5),
+            wavelengths_nm=wavelengths,
             progress=bar,
         )
     simulated.save(output, psfs=psfs)
     options.say_written(output, quiet)
-
-
-def _whole_numbers(text: str, option: str, separator: str, count: int) -> tuple[int, ...]:
-    """Converts `count` whole numbers with a separator between them. Raises InputError."""
-    words = text.split(separator)
-    if len(words) != count or not all(word.strip().isdecimal() and len(word) < 9 for word in words):
-        raise InputError(f'{option}: "{text:.40}": expected {count} whole numbers with "{separator}" between')
-    return tuple(map(int, words))

@@ -45,12 +45,8 @@ def list_lenses(
             "--focal-length", "--focal", metavar="MM", help="Focal length, 50 or 35-70; zoom lenses must include it"
         ),
     ] = None,
-    f_number: Annotated[
-        str | None, typer.Option("--f-number", metavar="N", help="Largest f-number, or a range: 1.4-2.8")
-    ] = None,
-    kind: Annotated[
-        str | None, typer.Option("--kind", metavar="NAME", help=f"Kind of lens: {', '.join(KINDS)}")
-    ] = None,
+    f_number: Annotated[str | None, typer.Option(metavar="N", help="Largest f-number, or a range: 1.4-2.8")] = None,
+    kind: Annotated[str | None, typer.Option(metavar="NAME", help=f"Kind of lens: {', '.join(KINDS)}")] = None,
     lens_path: lens_options.LensPath = None,
     as_json: options.AsJson = False,
 ) -> None:

@@ -4,46 +4,41 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from .._core import InputError, Lens, lens_names
+from ..files import LENS_SUFFIXES
 from . import options
 from .completions import completion_of
 from .shot_options import ring_option
 
-LensName = Annotated[
-    str,
-    typer.Argument(
-        help="A bundled lens (see `realcam lens list`) or a lens file",
-        metavar="LENS",
-        autocompletion=completion_of("LENS"),
-    ),
-]
-LensNames = Annotated[
-    list[str] | None,
-    typer.Argument(
-        help="Bundled lenses or lens files [all bundled lenses]", metavar="LENS", autocompletion=completion_of("LENS")
-    ),
-]
+
+def lens_argument(help: str) -> Any:
+    return typer.Argument(help=help, metavar="LENS", autocompletion=completion_of("LENS"))
+
+
+LENS_HELP = "A bundled lens (see `realcam lens list`) or a lens file"
+LensName = Annotated[str, lens_argument(LENS_HELP)]
+LensNames = Annotated[list[str] | None, lens_argument("Bundled lenses or lens files [all bundled lenses]")]
 Rays = Annotated[int, typer.Option(metavar="N", help="Number of rays per field point", min=0, max=101)]
 RaysFrom = Annotated[
     str,
     typer.Option("--rays-from", metavar="WHERE", help="Origin of the rays: object: object points; film: film points"),
 ]
-Fields = Annotated[
-    str,
-    typer.Option("--fields", metavar="SHARES", help="Field points, as fractions of the film's half diagonal"),
-]
-FieldsDeg = Annotated[
-    str | None,
-    typer.Option(
-        "--fields-deg", metavar="DEGREES", help="Field points as angles in front of the lens, instead of --fields"
-    ),
-]
+
+
+def fields_option(help: str) -> Any:
+    return options.parsed(options.numbers, "--fields-deg", "DEGREES", help)
+
+
+def wavelengths_option(help: str) -> Any:
+    return options.parsed(options.numbers, "--wavelengths", "NM", help)
+
+
 ThemeName = Annotated[str, typer.Option("--theme", metavar="NAME", help="Colour theme: light or dark")]
 Zoom = Annotated[str | None, ring_option("zoom")]
 LensPath = Annotated[
@@ -63,7 +58,6 @@ class File:
     glass: Annotated[
         list[str] | None,
         typer.Option(
-            "--glass",
             help="Definition of a glass in the lens file that no catalogue, or more than one, contains: NAME=n_d,V_d "
             "or NAME=schott:F4; may be repeated",
             metavar="NAME=N,V",
@@ -72,9 +66,7 @@ class File:
     glass_catalogue: Annotated[
         list[str] | None,
         typer.Option(
-            "--glass-catalogue",
-            help="Glass catalogue (.agf) that takes precedence over the bundled ones; may be repeated",
-            metavar="FILE",
+            help="Glass catalogue (.agf) that takes precedence over the bundled ones; may be repeated", metavar="FILE"
         ),
     ] = None
     lens_path: LensPath = None
@@ -84,7 +76,6 @@ class File:
     pbrt_thickness: Annotated[
         str | None,
         typer.Option(
-            "--pbrt-thickness",
             help="Whether a thickness in a .dat file lies after or before the surface of its row [by the first row]",
             metavar="WHERE",
         ),
@@ -108,15 +99,14 @@ class File:
 
 @dataclass(frozen=True)
 class Rings:
-    """Options for the aperture, focus and zoom rings of a lens."""
+    """Options for the aperture, focus and zoom rings of a lens: arguments of Lens.with_rings."""
 
     f_number: Annotated[float | None, ring_option("f_number")] = None
-    focus: Annotated[str | None, ring_option("focus_m")] = None
+    focus_m: Annotated[float | None, ring_option("focus_m")] = None
     zoom: Zoom = None
 
     def set(self, lens: Lens) -> Lens:
-        focus_m = None if self.focus is None else options.number(self.focus, "--focus", "a number of metres or inf")
-        return lens.with_rings(zoom=self.zoom, f_number=self.f_number, focus_m=focus_m)
+        return lens.with_rings(**asdict(self))
 
 
 @dataclass(frozen=True)
@@ -124,8 +114,7 @@ class Look:
     """Options for drawing lenses."""
 
     wavelengths: Annotated[
-        str | None,
-        typer.Option("--wavelengths", metavar="NM", help="Wavelengths of the rays in nm: 486,588,656 [the lens's]"),
+        Sequence[float] | None, wavelengths_option("Wavelengths of the rays in nm: 486,588,656 [the lens's]")
     ] = None
     radius_colours: Annotated[
         bool,
@@ -137,22 +126,19 @@ class Look:
         bool, typer.Option("--marks", help="Mark pupils (EP, XP), principal planes (H, H') and focal points (F, F')")
     ] = False
     theme: ThemeName = "light"
-    width: Annotated[
-        int, typer.Option("--width", metavar="PIXELS", help="Width of the picture in pixels", min=200, max=20000)
-    ] = 1600
+    width: Annotated[int, typer.Option(metavar="PIXELS", help="Width of the picture in pixels", min=200, max=20000)] = (
+        1600
+    )
 
     def arguments(self) -> dict[str, Any]:
         """Returns keyword arguments for the functions of realcam.drawing."""
         return {
-            "wavelengths_nm": numbers(self.wavelengths, "--wavelengths"),
+            "wavelengths_nm": self.wavelengths,
             "radius_colours": self.radius_colours,
             "marks": self.marks,
             "theme": self.theme,
             "width_px": self.width,
         }
-
-
-SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")  # of supported lens files
 
 
 def add_to_lens_path(folders: Sequence[str] | None) -> None:
@@ -171,7 +157,7 @@ def lens_files_on_path() -> dict[str, Path]:
     files: dict[str, Path] = {}
     for folder in filter(None, os.environ.get("REALCAM_LENS_PATH", "").split(":")):
         for path in sorted(Path(folder).iterdir()) if Path(folder).is_dir() else ():
-            if path.suffix.lower() in SUFFIXES and path.is_file():
+            if path.suffix.lower() in LENS_SUFFIXES and path.is_file():
                 files.setdefault(path.stem, path)
     return {name: files[name] for name in sorted(files.keys() - lens_names())}
 
@@ -180,7 +166,7 @@ def default_output(name: str, suffix: str) -> Path:
     """Returns a file name in the current folder for output about a lens. name: lens as the user typed it, because the
     name in a lens file may be any text."""
     file = Path(name)
-    stem = file.stem if file.suffix.lower() in SUFFIXES else file.name
+    stem = file.stem if file.suffix.lower() in LENS_SUFFIXES else file.name
     return Path(f"{stem or 'lens'}{suffix}")
 
 
@@ -189,18 +175,3 @@ def check_not_the_lens(target: Path, *names: str) -> None:
     for name in names:
         if Path(name).is_file() and target.exists() and target.samefile(name):
             raise InputError(f"{target}: is the lens file itself; choose another name")
-
-
-def numbers(text: str | None, option: str) -> list[float] | None:
-    """Converts numbers with commas between them; None stays None. Raises InputError."""
-    return None if text is None else [options.number(word.strip(), option) for word in text.split(",")]
-
-
-def seconds(text: str) -> float:
-    """Converts a time in seconds, 0.008 or 1/125. Raises InputError."""
-    numerator, slash, denominator = text.partition("/")
-    value = options.number(numerator, "--exposure-time")
-    divisor = options.number(denominator, "--exposure-time") if slash else 1.0
-    if divisor == 0:
-        raise InputError(f'--exposure-time: "{text}" divides by 0')
-    return value / divisor

@@ -2,39 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 import typer
-from numpy.typing import NDArray
 
 from .._core import InputError
 from . import lens_options, options
-from .completions import completion_of
 from .grouped_options import grouped
 
 ObjectDistance = Annotated[
-    str | None,
-    typer.Option(
+    float | None,
+    options.parsed(
+        options.number,
         "--object-distance",
-        metavar="METRES",
-        help="Distance from the object plane to the front vertex in metres, or inf [the plane in focus]",
+        "METRES",
+        "Distance from the object plane to the front vertex in metres, or inf [the plane in focus]",
     ),
 ]
 Fields = Annotated[
-    str | None,
-    typer.Option(
-        "--fields-deg", metavar="DEGREES", help="Field angles in degrees, separated by commas [up to the film's corner]"
-    ),
+    Sequence[float] | None,
+    lens_options.fields_option("Field angles in degrees, separated by commas [up to the film's corner]"),
 ]
 Wavelengths = Annotated[
-    str | None,
-    typer.Option(
-        "--wavelengths",
-        metavar="NM",
-        help="Wavelengths in nm, separated by commas [F line, the design wavelength, C line]",
-    ),
+    Sequence[float] | None,
+    lens_options.wavelengths_option("Wavelengths in nm, separated by commas [F line, the design wavelength, C line]"),
 ]
 
 
@@ -46,40 +39,28 @@ def register(app: typer.Typer) -> None:
 
 def plot(
     kind: Annotated[str, typer.Argument(help="Kind of plot, one of those above", metavar="KIND")],
-    name: Annotated[
-        str | None,
-        typer.Argument(
-            help="A bundled lens (see `realcam lens list`) or a lens file",
-            metavar="LENS",
-            autocompletion=completion_of("LENS"),
-        ),
-    ] = None,
+    name: Annotated[str | None, lens_options.lens_argument(lens_options.LENS_HELP)] = None,
     *,
     output: Annotated[
         list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="FILE",
-            help=".svg, .pdf, .png, .jpg, .tif or .webp; .json or .csv for the numbers. May be repeated",
-        ),
+        options.output(".svg, .pdf, .png, .jpg, .tif or .webp; .json or .csv for the numbers. May be repeated"),
     ] = None,
     rings: lens_options.Rings,
     file: lens_options.File,
     fields: Fields = None,
     wavelengths: Wavelengths = None,
     frequencies: Annotated[
-        str | None,
-        typer.Option(
+        Sequence[float] | None,
+        options.parsed(
+            options.numbers,
             "--frequencies",
-            metavar="PER_MM",
-            help="Frequencies of the MTF in periods per mm, separated by commas; for `mtf`, the highest frequency",
+            "PER_MM",
+            "Frequencies of the MTF in periods per mm, separated by commas; for `mtf`, the highest frequency",
         ),
     ] = None,
     method: Annotated[
         str | None,
         typer.Option(
-            "--method",
             metavar="NAME",
             help="For mtf, mtf-field and mtf-focus: diffraction or geometric (rays alone). For psf: direct, fft or "
             "geometric",
@@ -113,13 +94,13 @@ def plot(
         files.check_target(target, (*FORMATS, *numbers.FORMATS))
         lens_options.check_not_the_lens(target, name)
     lens = rings.set(file.lens(name))
-    bundles = analysis.Bundles(lens, _distance(object_distance))
+    bundles = analysis.Bundles(lens, object_distance)
     request = kinds.PlotArguments(
         lens,
         bundles,
-        _numbers(fields, "--fields-deg"),
-        _numbers(wavelengths, "--wavelengths"),
-        _numbers(frequencies, "--frequencies"),
+        fields,
+        wavelengths,
+        frequencies,
         method,
     )
     data = kinds.compute(kind, request)
@@ -137,17 +118,14 @@ def plot(
 def report(
     name: lens_options.LensName,
     *,
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="A .pdf or .html file [LENS.pdf, here]")
-    ] = None,
+    output: Annotated[Path | None, options.output("A .pdf or .html file [LENS.pdf, here]")] = None,
     rings: lens_options.Rings,
     file: lens_options.File,
     fields: Fields = None,
     wavelengths: Wavelengths = None,
     object_distance: ObjectDistance = None,
     theme: Annotated[
-        str | None,
-        typer.Option("--theme", metavar="NAME", help="light or dark [light; of .html as the browser is set]"),
+        str | None, typer.Option(metavar="NAME", help="light or dark [light; of .html as the browser is set]")
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
@@ -161,33 +139,18 @@ def report(
 
     lens_of_file, file_fields, file_wavelengths = file.lens_and_light(name)
     lens = rings.set(lens_of_file)
-    fields_deg, wavelengths_nm = _numbers(fields, "--fields-deg"), _numbers(wavelengths, "--wavelengths")
-    if (
-        fields_deg is None
-        and lens.is_rotational
-        and lens.zoom_position == lens_of_file.zoom_position
-        and any(file_fields)
-    ):
-        fields_deg = three_of([0.0, *file_fields])
-    if wavelengths_nm is None and len(file_wavelengths) > 1:
-        wavelengths_nm = three_of(file_wavelengths, lens.wavelength_nm)
+    if fields is None and lens.is_rotational and lens.zoom_position == lens_of_file.zoom_position and any(file_fields):
+        fields = three_of([0.0, *file_fields])
+    if wavelengths is None and len(file_wavelengths) > 1:
+        wavelengths = three_of(file_wavelengths, lens.wavelength_nm)
     target = output or lens_options.default_output(name, ".pdf")
     lens_options.check_not_the_lens(target, name)
     save_report(
         lens,
         target,
-        fields_deg=fields_deg,
-        wavelengths_nm=wavelengths_nm,
-        object_distance_m=_distance(object_distance),
+        fields_deg=fields,
+        wavelengths_nm=wavelengths,
+        object_distance_m=object_distance,
         theme=theme,
     )
     options.say_written(target, quiet)
-
-
-def _numbers(text: str | None, option: str) -> NDArray[np.float64] | None:
-    values = lens_options.numbers(text, option)
-    return None if values is None else np.array(values)
-
-
-def _distance(text: str | None) -> float | None:
-    return None if text is None else options.number(text, "--object-distance")

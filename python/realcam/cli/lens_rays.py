@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -18,12 +19,11 @@ from .grouped_options import grouped
 def rays(
     name: lens_options.LensName,
     *,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="The .npz file to write")],
+    output: Annotated[Path, options.output("The .npz file to write")],
     rings: lens_options.Rings,
     count: Annotated[int, typer.Option("--rays", metavar="N", help="Number of rays, blocked ones among them")] = 20000,
     wavelengths: Annotated[
-        str | None,
-        typer.Option("--wavelengths", metavar="NM,NM,...", help="Wavelengths of the rays [the design wavelength]"),
+        Sequence[float] | None, lens_options.wavelengths_option("Wavelengths of the rays [the design wavelength]")
     ] = None,
     file: lens_options.File,
     quiet: options.Quiet = False,
@@ -33,13 +33,13 @@ def rays(
 
     lens = rings.set(file.lens(name))
     lens_options.check_not_the_lens(output, name)
-    save_rays(lens, output, rays=count, wavelengths_nm=lens_options.numbers(wavelengths, "--wavelengths"))
+    save_rays(lens, output, rays=count, wavelengths_nm=wavelengths)
     options.say_written(output, quiet)
 
 
 def fit(
     rays: Annotated[Path, typer.Argument(help="An .npz file of the format ray-pairs/1", metavar="RAYS")],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="The .npz file to write")],
+    output: Annotated[Path, options.output("The .npz file to write")],
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:

@@ -22,48 +22,30 @@ def tolerance(
     name: lens_options.LensName,
     *,
     grade: Annotated[
-        str, typer.Option("--grade", metavar="NAME", help="Grade of all tolerances: commercial, precision or high")
+        str, typer.Option(metavar="NAME", help="Grade of all tolerances: commercial, precision or high")
     ] = "commercial",
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="File for a report, .html")
-    ] = None,
-    copies: Annotated[
-        int, typer.Option("--copies", metavar="N", help="Number of copies of the lens with random errors")
-    ] = 1000,
-    seed: Annotated[int, typer.Option("--seed", metavar="N", help="Seed; the same seed makes the same copies")] = 0,
+    output: Annotated[Path | None, options.output("File for a report, .html")] = None,
+    copies: Annotated[int, typer.Option(metavar="N", help="Number of copies of the lens with random errors")] = 1000,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed; the same seed makes the same copies")] = 0,
     compensate: Annotated[
         str,
-        typer.Option(
-            "--compensate",
-            metavar="WHAT",
-            help="Compensators: refocus, film_tilt, both separated by a comma, or nothing",
-        ),
+        typer.Option(metavar="WHAT", help="Compensators: refocus, film_tilt, both separated by a comma, or nothing"),
     ] = "refocus",
     distribution: Annotated[
-        str,
-        typer.Option(
-            "--distribution",
-            metavar="NAME",
-            help="Distribution of errors: uniform, or normal with the limit at 2 sigma",
-        ),
+        str, typer.Option(metavar="NAME", help="Distribution of errors: uniform, or normal with the limit at 2 sigma")
     ] = "uniform",
     frequency: Annotated[
-        float | None,
-        typer.Option("--frequency", metavar="PER_MM", help="Spatial frequency of the MTF [20 on a film of 36 x 24 mm]"),
+        float | None, typer.Option(metavar="PER_MM", help="Spatial frequency of the MTF [20 on a film of 36 x 24 mm]")
     ] = None,
     at_least: Annotated[
         float | None,
         typer.Option(
-            "--at-least",
-            metavar="MTF",
-            help="Smallest acceptable MTF of the worst field, for the yield [half of the nominal lens's]",
+            metavar="MTF", help="Smallest acceptable MTF of the worst field, for the yield [half of the nominal lens's]"
         ),
     ] = None,
     rings: lens_options.Rings,
     file: lens_options.File,
-    theme: Annotated[
-        str | None, typer.Option("--theme", metavar="NAME", help="light or dark [as the browser is set]")
-    ] = None,
+    theme: Annotated[str | None, typer.Option(metavar="NAME", help="light or dark [as the browser is set]")] = None,
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
@@ -62,36 +62,28 @@ class Bounds:
 def optimise(
     name: lens_options.LensName,
     *,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .toml, .zmx or .seq file")],
+    output: Annotated[Path, options.output("A .toml, .zmx or .seq file")],
     vary: Annotated[
         list[str] | None,
         typer.Option(
-            "--vary",
             metavar="WHAT",
             help="Variables: radii, thicknesses, conics, or a single one: radius:2, thickness:3, conic:2, aspheric:2:4 "
             "(number of the surface from 1, power); may be repeated [radii]",
         ),
     ] = None,
     fields_deg: Annotated[
-        str | None,
-        typer.Option(
-            "--fields-deg",
-            metavar="DEGREES",
-            help="Field angles whose spots are minimised, separated by commas [those of the lens's file; the film's]",
+        Sequence[float] | None,
+        lens_options.fields_option(
+            "Field angles whose spots are minimised, separated by commas [those of the lens's file; the film's]"
         ),
     ] = None,
     focal_length: Annotated[
-        float | None, typer.Option("--focal-length", metavar="MM", help="Target focal length [that of the input lens]")
+        float | None, typer.Option(metavar="MM", help="Target focal length [that of the input lens]")
     ] = None,
     bounds: Bounds,
     most_distortion: Annotated[
         float | None,
-        typer.Option(
-            "--most-distortion",
-            metavar="PERCENT",
-            help="Largest distortion at the outermost field, of either sign",
-            min=0,
-        ),
+        typer.Option(metavar="PERCENT", help="Largest distortion at the outermost field, of either sign", min=0),
     ] = None,
     glasses: Annotated[bool, typer.Option("--glasses", help="Search the catalogue for better glasses, too")] = False,
     global_looks: Annotated[
@@ -118,7 +110,7 @@ def optimise(
     lens, file_fields_deg, _ = file.lens_and_light(name)
     lens = rings.set(lens)
     variables = [v for text in vary or ["radii"] for v in _variables_of(text, lens, bounds)]
-    fields = tuple(lens_options.numbers(fields_deg, "--fields-deg") or file_fields_deg or _fields(lens))
+    fields = tuple(fields_deg or file_fields_deg or _fields(lens))
     operands = _edges(lens, bounds.least_edge)
     if most_distortion is not None:
         outermost = max(fields, key=abs)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from .._core import InputError, Lens, LensFileError, _did_you_mean
-from ..number_text import number_text
+from ..number_text import optics_text
 from .command_words import in_known_spelling
 from .completions import completion_of
 
@@ -29,6 +29,23 @@ Device = Annotated[
     ),
 ]
 Threads = Annotated[int, typer.Option(metavar="N", help="Number of threads; 0: all", min=0, max=4096)]
+
+
+def output(help: str, metavar: str = "FILE") -> Any:
+    """Returns the option for what a command writes."""
+    return typer.Option("--output", "-o", metavar=metavar, help=help)
+
+
+def parsed(convert: Callable[..., Any], name: str, metavar: str | None, help: str, *arguments: Any) -> Any:
+    """Returns an option whose text is converted by convert(text, name, *arguments), which may raise InputError."""
+
+    def parser(text: str) -> Any:
+        try:
+            return convert(text, name, *arguments)
+        except InputError as error:  # a ValueError, whose message typer would replace
+            raise typer.BadParameter(str(error)) from error
+
+    return typer.Option(name, parser=parser, metavar=metavar, help=help)
 
 
 def say_written(target: Path, quiet: bool = False) -> None:
@@ -48,13 +65,41 @@ def number(text: str, option: str, expected: str = "a number") -> float:
     return value
 
 
-def frame_numbers(text: str) -> range:
+def numbers(text: str, option: str) -> list[float]:
+    """Converts numbers with commas between them. Raises InputError."""
+    return [number(word.strip(), option) for word in text.split(",")]
+
+
+def whole_numbers(text: str, option: str, separator: str, *counts: int) -> tuple[int, ...]:
+    """Converts whole numbers with a separator between them. counts: permitted counts. Raises InputError."""
+    words = text.split(separator)
+    if len(words) not in counts or not all(word.strip().isdecimal() and len(word) < 9 for word in words):
+        count = " or ".join(map(str, counts))
+        raise InputError(f'{option}: "{text:.40}": expected {count} whole numbers with "{separator}" between')
+    return tuple(map(int, words))
+
+
+def size(text: str, option: str) -> tuple[int, ...]:
+    """Converts a width and a height, 1920x1080. Raises InputError."""
+    return whole_numbers(text, option, "x", 2)
+
+
+def seconds(text: str, option: str) -> float:
+    """Converts a time in seconds, 0.008 or 1/125. Raises InputError."""
+    numerator, slash, denominator = text.partition("/")
+    divisor = number(denominator, option) if slash else 1.0
+    if divisor == 0:
+        raise InputError(f'{option}: "{text}" divides by 0')
+    return number(numerator, option) / divisor
+
+
+def frame_numbers(text: str, option: str) -> range:
     """Converts the numbers of frames: 7, 1-240, or 1-240x10 for every tenth frame. Raises InputError."""
     found = re.fullmatch(r"(\d{1,6})(?:-(\d{1,6})(?:x(\d{1,6}))?)?", text)
     step = int(found[3] or 1) if found else 0
     numbers = range(int(found[1]), int(found[2] or found[1]) + 1, step) if found and step else None
     if not numbers:
-        raise InputError(f'--frames: "{text:.40}": expected a number, 1-240 or 1-240x2, the smaller one first')
+        raise InputError(f'{option}: "{text:.40}": expected a number, 1-240 or 1-240x2, the smaller one first')
     return numbers
 
 
@@ -97,7 +142,5 @@ def advice_on(error: LensFileError) -> str:
 
 def title_of(lens: Lens) -> str:
     """Returns the title of a plot: the lens, its focal length and its f-number."""
-    data = lens.first_order()
-    focal_length, f_number = number_text(data.effective_focal_length_mm), number_text(lens.f_number, 3)
-    text = f"{lens.title or lens.name}   f = {focal_length} mm, f/{f_number}"
+    text = f"{lens.title or lens.name}   {optics_text(lens)}"
     return "".join(c for c in text if c.isprintable())  # titles come from files and may contain control characters

@@ -80,23 +80,17 @@ def expose(
     ],
     output: Annotated[
         list[Path],
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="FILE",
-            help="Raw values as .dng or .npy, developed picture as .png, .jpg, .tif or .webp; may be repeated",
-        ),
+        options.output("Raw values as .dng or .npy, developed picture as .png, .jpg, .tif or .webp; may be repeated"),
     ],
     sensor: Annotated[
         str,
         typer.Option(
-            "--sensor",
             metavar="SENSOR",
             help="A bundled sensor (`realcam sensor list`) or a sensor file",
             autocompletion=completion_of("SENSOR"),
         ),
     ] = "ideal",
-    iso: Annotated[float | None, typer.Option("--iso", metavar="ISO", help="Sensitivity [the picture's]")] = None,
+    iso: Annotated[float | None, typer.Option(metavar="ISO", help="Sensitivity [the picture's]")] = None,
     seed: Annotated[
         int, typer.Option(metavar="N", help="Seed of the noise of this exposure", min=0, max=2**32 - 1)
     ] = 0,
@@ -105,11 +99,7 @@ def expose(
     ] = 0,
     temperature: Annotated[
         float | None,
-        typer.Option(
-            "--temperature",
-            metavar="CELSIUS",
-            help="Temperature in degrees Celsius [that of the sensor's dark current]",
-        ),
+        typer.Option(metavar="CELSIUS", help="Temperature in degrees Celsius [that of the sensor's dark current]"),
     ] = None,
     tone: Annotated[
         str, typer.Option(metavar="CURVE", help="Tone curve of the developed picture: linear (clipped) or film")

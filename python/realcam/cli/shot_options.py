@@ -11,6 +11,7 @@ import typer
 
 from .. import _core
 from ..shot import Shot, shot_with_words
+from . import options
 from .completions import completion_of
 
 
@@ -34,24 +35,22 @@ def shot_options(
 
 def ring_option(name: str) -> Any:
     """Returns the option of a shot key for a command about lenses, where the default is the lens's own setting."""
-    return _option(next(key for key in _core._shot_keys() if key.name == name))
+    key = next(key for key in _core._shot_keys() if key.name == name)
+    if name == "focus_m":
+        return options.parsed(options.number, str(key.option), key.placeholder, key.text, "a number of metres or inf")
+    return _option(key, help=key.text)
 
 
-def _option(key: _core._ShotKey, *, help: str | None = None, rich_help_panel: str | None = None) -> Any:
-    return typer.Option(
-        key.option,
-        metavar=key.placeholder,
-        help=help or key.text,
-        rich_help_panel=rich_help_panel,
-        autocompletion=completion_of(key.placeholder),
-    )
+def _option(key: _core._ShotKey, **settings: Any) -> Any:
+    completion = completion_of(key.placeholder)
+    return typer.Option(key.option, metavar=key.placeholder, autocompletion=completion, **settings)
 
 
-def load_shot(path: Path, options: Any, device: str) -> Shot:
-    """Loads a shot file; values of the options override those of the file."""
-    return shot_with_words(path, words_of(options), device)
+def load_shot(path: Path, values: Any, device: str) -> Shot:
+    """Loads a shot file. values: the command's ShotOptions, which override those of the file."""
+    return shot_with_words(path, words_of(values), device)
 
 
-def words_of(options: Any) -> dict[str, str]:
+def words_of(values: Any) -> dict[str, str]:
     """Returns the values of the options that the user specified, by shot key."""
-    return {key: value for key, value in asdict(options).items() if value is not None}
+    return {key: value for key, value in asdict(values).items() if value is not None}

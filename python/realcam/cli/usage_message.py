@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from .._core import _did_you_mean
+from .._core import InputError, _did_you_mean
 from .command_words import Grammar, in_known_spelling, normalised
 
 # click's UsageError: newer versions of typer bundle click under a private name.
@@ -62,6 +62,8 @@ def _grammar_of(command: Any, context: Any) -> Grammar:
 
 def usage_message(error: Any) -> str:
     """Returns the message of click's UsageError: the mistake, what was meant, and where the options are listed."""
+    if isinstance(error.__cause__, InputError):  # from options.parsed
+        return str(error.__cause__)
     context = error.ctx
     commands = getattr(context.command, "commands", None) if context else None
     where = f"{context.command_path if context else 'realcam'} --help lists the {'commands' if commands else 'options'}"

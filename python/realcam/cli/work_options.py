@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -20,9 +20,16 @@ if TYPE_CHECKING:
     from ..job.executing import Part
     from ..job.farm_files import FarmWork
 
-PartText = Annotated[
-    str | None, typer.Option("--part", metavar="K/N", help="Render the K-th of N parts, in this process: 3/8")
-]
+
+def _part(text: str, option: str) -> Part:
+    """Converts "K/N". Raises InputError."""
+    found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
+    if not found or not 1 <= int(found[1]) <= int(found[2]):
+        raise InputError(f'{option}: "{text:.40}": expected K/N, 1/8 to 8/8')
+    return int(found[1]), int(found[2])
+
+
+PartOption = Annotated[Any, options.parsed(_part, "--part", "K/N", "Render the K-th of N parts, in this process: 3/8")]
 Scheduler = Annotated[
     str | None,
     typer.Option(
@@ -35,19 +42,12 @@ Scheduler = Annotated[
 class FarmOptions:
     """Options for files that start the tasks of a render farm, for grouped()."""
 
-    sbatch: Annotated[
-        Path | None, typer.Option("--sbatch", metavar="FILE", help="Also write a script for Slurm's sbatch")
-    ] = None
-    qsub: Annotated[
-        Path | None, typer.Option("--qsub", metavar="FILE", help="Also write a script for the qsub of PBS")
-    ] = None
+    sbatch: Annotated[Path | None, typer.Option(metavar="FILE", help="Also write a script for Slurm's sbatch")] = None
+    qsub: Annotated[Path | None, typer.Option(metavar="FILE", help="Also write a script for the qsub of PBS")] = None
     openjd: Annotated[
-        Path | None,
-        typer.Option("--openjd", metavar="FILE", help="Also write a template of Open Job Description, .json"),
+        Path | None, typer.Option(metavar="FILE", help="Also write a template of Open Job Description, .json")
     ] = None
-    tasks: Annotated[
-        int, typer.Option("--tasks", metavar="N", help="Processes that these files start", min=1, max=100000)
-    ] = 8
+    tasks: Annotated[int, typer.Option(metavar="N", help="Processes that these files start", min=1, max=100000)] = 8
 
 
 def farm_files(farm: FarmOptions, work: FarmWork) -> dict[Path, bytes]:
@@ -76,17 +76,7 @@ def write_farm_files(written: dict[Path, bytes], quiet: bool) -> None:
         options.say_written(path, quiet)
 
 
-def part_of(text: str | None) -> Part | None:
-    """Converts "K/N". Raises InputError."""
-    if text is None:
-        return None
-    found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
-    if not found or not 1 <= int(found[1]) <= int(found[2]):
-        raise InputError(f'--part: "{text:.40}": expected K/N, 1/8 to 8/8')
-    return int(found[1]), int(found[2])
-
-
-def check_single(part: str | None, scheduler: str | None, workers: int | None, is_here: bool = False) -> bool:
+def check_single(part: Part | None, scheduler: str | None, workers: int | None, is_here: bool = False) -> bool:
     """Returns True if this process does the work alone. Raises InputError for options of several processes then."""
     is_single = is_here or part is not None
     if is_single and (scheduler is not None or workers is not None):

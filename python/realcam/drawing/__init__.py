@@ -1,12 +1,8 @@
 """Drawings of lenses, with matplotlib."""
 
-from .lens_drawings import draw, draw_cross_section, draw_states, save_cross_section, save_states, states_of
-
-__all__ = [
-    "draw",
-    "draw_cross_section",
-    "draw_states",
-    "save_cross_section",
-    "save_states",
-    "states_of",
-]
+from .lens_drawings import draw as draw
+from .lens_drawings import draw_cross_section as draw_cross_section
+from .lens_drawings import draw_states as draw_states
+from .lens_drawings import save_cross_section as save_cross_section
+from .lens_drawings import save_states as save_states
+from .lens_drawings import states_of as states_of

@@ -11,6 +11,7 @@ import matplotlib.figure
 from matplotlib.axes import Axes
 
 from .._core import InputError, Lens, lens_names
+from ..number_text import optics_text
 from ..section import cross_section
 from .draw import draw_section, extent_of, prepare_axes
 from .figure_files import check_figure_target, save_figure
@@ -69,11 +70,10 @@ def _draw_cell(lens: Lens, axes: Axes, style: Style) -> None:
 
 
 def _write_title(lens: Lens, axes: Axes, style: Style) -> None:
-    data = lens.first_order()
     # A dollar sign in a name must not begin a formula.
     name = "".join(c for c in lens.name if c.isprintable())
     axes.set_title(
-        f"{name}\n{data.effective_focal_length_mm:.4g} mm  f/{lens.f_number:.3g}",
+        f"{name}\n{optics_text(lens)}",
         fontsize=7,
         color=style.theme.text,
         parse_math=False,

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .._core import Lens
-from ..number_text import number_text
+from ..number_text import number_text, optics_text
 from ..section.ray_paths import RayBundle
 from ..section.section import CrossSection
 from .themes import LIGHT, Theme, colours_of_wavelengths
@@ -42,10 +42,7 @@ def legend_of_wavelengths(section: CrossSection, theme: Theme) -> Sequence[tuple
 
 def data_of(lens: Lens, section: CrossSection) -> str:
     """Returns the subtitle of a drawing: focal length, f-number and focus."""
-    data = lens.first_order()
-    words = [f"f = {number_text(data.effective_focal_length_mm)} mm"]
-    if math.isfinite(lens.f_number):
-        words.append(f"f/{lens.f_number:.3g}")
+    words = [optics_text(lens)]
     if not math.isinf(lens.focus_distance_m):
         words.append(f"focused at {number_text(lens.focus_distance_m)} m")
     if len(section.wavelengths_nm) == 1:

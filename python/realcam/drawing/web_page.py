@@ -23,7 +23,8 @@ def inline_svg(figure: Figure, salt: str, crop: Bbox | None = None) -> str:
 def page_top(title: str, style: str, theme: str | None) -> str:
     """Returns the start of an HTML page, up to its heading.
 
-    title: HTML-escaped. style: CSS, which may use the colour variables. theme: see colour_variables().
+    title: HTML-escaped. style: CSS, which may use the colour variables. theme: "light", "dark", or None for the
+    browser's setting; print always uses the light theme.
     """
     return f"""<!doctype html>
 <html lang="en">
@@ -31,13 +32,11 @@ def page_top(title: str, style: str, theme: str | None) -> str:
 <meta name="viewport" content="width=device-width">
 <title>{title}</title>
 <style>
-{colour_variables(theme)}{style}</style>
+{_colour_variables(theme)}{style}</style>
 <h1>{title}</h1>"""
 
 
-def colour_variables(theme: str | None) -> str:
-    """Returns CSS that sets the colour variables. theme: "light", "dark", or None for the browser's setting; print
-    always uses the light theme."""
+def _colour_variables(theme: str | None) -> str:
     light, dark = (_declared(name) for name in ("light", "dark"))
     screen = light if theme is None else _declared(theme)
     following = f"@media (prefers-color-scheme: dark) {{ {dark} }}\n" if theme is None else ""

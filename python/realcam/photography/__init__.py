@@ -1,34 +1,18 @@
 """Photographers' figures of a lens: depth of field, angle of view, breathing, exposure, and comparisons."""
 
-from .comparison import FieldFigures, LensSummary, lens_summary
-from .depth import DepthOfField, SharpRange, blur_diameter_mm, depth_of_field
-from .figures import (
-    Breathing,
-    ExposureValue,
-    PhotographicFigures,
-    angle_of_view_deg,
-    breathing,
-    exposure_value,
-    magnification,
-    photographic_figures,
-    working_f_number,
-)
-
-__all__ = [
-    "Breathing",
-    "DepthOfField",
-    "ExposureValue",
-    "FieldFigures",
-    "LensSummary",
-    "PhotographicFigures",
-    "SharpRange",
-    "angle_of_view_deg",
-    "blur_diameter_mm",
-    "breathing",
-    "depth_of_field",
-    "exposure_value",
-    "lens_summary",
-    "magnification",
-    "photographic_figures",
-    "working_f_number",
-]
+from .comparison import FieldFigures as FieldFigures
+from .comparison import LensSummary as LensSummary
+from .comparison import lens_summary as lens_summary
+from .depth import DepthOfField as DepthOfField
+from .depth import SharpRange as SharpRange
+from .depth import blur_diameter_mm as blur_diameter_mm
+from .depth import depth_of_field as depth_of_field
+from .figures import Breathing as Breathing
+from .figures import ExposureValue as ExposureValue
+from .figures import PhotographicFigures as PhotographicFigures
+from .figures import angle_of_view_deg as angle_of_view_deg
+from .figures import breathing as breathing
+from .figures import exposure_value as exposure_value
+from .figures import magnification as magnification
+from .figures import photographic_figures as photographic_figures
+from .figures import working_f_number as working_f_number

@@ -5,12 +5,13 @@ from __future__ import annotations
 import html
 import math
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from .. import files
 from ..analysis import style
 from ..drawing.themes import theme_named
 from ..drawing.web_page import inline_svg, page_top
+from ..html_tables import html_table
 from ..number_text import percent_text
 from .plots import MEASURES, study_figure, with_limit
 from .study import SHARES, ToleranceStudy
@@ -64,15 +65,16 @@ def page_of(study: ToleranceStudy, theme: str | None, loss: float) -> str:
         )
         for o in offenders
     ]
-    sensitivities = _table(
-        ["tolerance", "mean MTF −", "+", "worst field −", "+", "spot / µm", "focal length / mm", "allowed"], rows
+    sensitivities = html_table(
+        rows, ["tolerance", "mean MTF −", "+", "worst field −", "+", "spot / µm", "focal length / mm", "allowed"]
     )
+    quantiles = html_table(_quantiles(study), ["", "nominal", *(f"{percent_text(share)} below" for share in SHARES)])
     whole = "" if study.is_whole else " The study was stopped before all copies were evaluated."
     return f"""{page_top(title, STYLE, theme)}
 <p>{len(study)} copies, seed {study.seed}; {html.escape(_compensators(study))}.{whole}</p>
 {figure}
 <h2>Copies</h2>
-<div class="wide">{_table(["", "nominal", *(f"{percent_text(x)} below" for x in SHARES)], _quantiles(study))}</div>
+<div class="wide">{quantiles}</div>
 <h2>Each tolerance alone</h2>
 <div class="wide">{sensitivities}</div>
 <p class="note">Changes at the lower and the upper limit, with the compensators set; for a tolerance with a direction,
@@ -105,11 +107,3 @@ def _compensators(study: ToleranceStudy) -> str:
 def _limit(value: float | None) -> str:
     """Text of an allowed limit; "any" for inf."""
     return "" if value is None else "any" if math.isinf(value) else f"{value:.3g}"
-
-
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    def row(cells: Sequence[str], tag: str) -> str:
-        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in cells) + "</tr>"
-
-    body = "\n".join(row(cells, "td") for cells in rows)
-    return f"<table><thead>{row(head, 'th')}</thead>\n<tbody>\n{body}\n</tbody></table>"

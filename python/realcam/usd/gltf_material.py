@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from ..rec709 import srgb_of_linear
 from .glb import Json
 from .shading_network import DEFAULTS, Primvar, ShadingNetwork
 from .stage import OpenStage
-from .textures import Floats, Pictures, Sampled, same_size, srgb_of_linear
+from .textures import Floats, Pictures, Sampled, same_size
 
 
 @dataclass

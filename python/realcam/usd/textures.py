@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..rec709 import linear_of_srgb
 from .assets import Asset
 from .glb import Glb, Json
 
@@ -103,7 +104,7 @@ class Sampled:
             values /= 255
         if self.picture.is_srgb(self.space):
             is_colour = np.array(self.channels) < 3  # alpha is always linear
-            values = np.where(is_colour, _linear_of_srgb(values), values)
+            values = np.where(is_colour, linear_of_srgb(values), values)
         return np.asarray(values * np.array(self.scale)[self.channels] + np.array(self.bias)[self.channels])
 
 
@@ -150,11 +151,6 @@ class Pictures:
         return info
 
 
-def srgb_of_linear(values: Floats) -> Floats:
-    """Encodes linear values from 0 to 1 (IEC 61966-2-1)."""
-    return np.where(values <= 0.0031308, 12.92 * values, 1.055 * np.maximum(values, 0.0031308) ** (1 / 2.4) - 0.055)
-
-
 def same_size(parts: list[Floats]) -> list[Floats]:
     """Returns pictures, (H, W, C), with the size of the largest one; others repeat their nearest pixels."""
     height, width = max(p.shape[0] for p in parts), max(p.shape[1] for p in parts)
@@ -167,10 +163,6 @@ def same_size(parts: list[Floats]) -> list[Floats]:
     if height * width > _MAX_PIXELS:
         raise ValueError("a computed texture would be too large")
     return [scaled(part) for part in parts]
-
-
-def _linear_of_srgb(values: Floats) -> Floats:
-    return np.where(values <= 0.04045, values / 12.92, ((np.maximum(values, 0) + 0.055) / 1.055) ** 2.4)
 
 
 def _png(values: Floats) -> bytes:

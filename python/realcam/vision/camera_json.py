@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 from collections.abc import Iterable
 from typing import Any
@@ -30,33 +29,35 @@ def camera_json(
     rotation, translation = camera.world_to_camera
     matrix = camera.camera_matrix
     data = lens.first_order()
-    return {
+    values = {
         "realcam": __version__,
         "width": film.resolution[0],
         "height": film.resolution[1],
         "film_mm": [film.width_mm, film.height_mm],
-        "film_shift_mm": list(film.shift_mm),
+        "film_shift_mm": film.shift_mm,
         "lens": {
             "name": lens.name,
-            "focal_length_mm": _finite(data.effective_focal_length_mm),
-            "f_number": _finite(lens.f_number),
-            "focus_distance_m": _finite(lens.focus_distance_m),
+            "focal_length_mm": data.effective_focal_length_mm,
+            "f_number": lens.f_number,
+            "focus_distance_m": lens.focus_distance_m,
         },
         "model": camera.model,
         "exposure_time_s": camera.exposure_time_s,
         "iso": camera.iso,
         "pose": {
-            "position_m": list(camera.position),
-            "film_centre_m": list(camera.film_centre_m),
-            "entrance_pupil_m": list(camera.entrance_pupil_position_m or ()),
-            "world_to_camera": {"rotation": rotation.tolist(), "translation_m": translation.tolist()},
-            "camera_to_world_opengl": conventions.opengl_pose(rotation, translation).tolist(),
+            "position_m": camera.position,
+            "film_centre_m": camera.film_centre_m,
+            "entrance_pupil_m": camera.entrance_pupil_position_m or (),
+            "world_to_camera": {"rotation": rotation, "translation_m": translation},
+            "camera_to_world_opengl": conventions.opengl_pose(rotation, translation),
         },
-        "camera_matrix": matrix.tolist(),
-        "opencv_camera_matrix": conventions.opencv_matrix(matrix).tolist(),
+        "camera_matrix": matrix,
+        "opencv_camera_matrix": conventions.opencv_matrix(matrix),
         "fits": [_fit_json(fit) for fit in fits],
         **({} if calibration is None else {"calibration": _calibration_json(calibration)}),
     }
+    converted: dict[str, Any] = json_value(values)
+    return converted
 
 
 def save_camera_json(path: str | os.PathLike[str], camera: Camera, fits: Iterable[CameraModelFit] = ()) -> None:
@@ -71,9 +72,9 @@ def _calibration_json(calibration: Calibration) -> dict[str, Any]:
         "model": calibration.model,
         "width": calibration.size[0],
         "height": calibration.size[1],
-        "camera_matrix": calibration.camera_matrix.tolist(),
+        "camera_matrix": calibration.camera_matrix,
         "pixel_origin": calibration.pixel_origin,
-        "file_values": json_value(dict(calibration.file_values)),
+        "file_values": dict(calibration.file_values),
         "largest_angle_deg": calibration.largest_angle_deg,
     }
 
@@ -81,19 +82,15 @@ def _calibration_json(calibration: Calibration) -> dict[str, Any]:
 def _fit_json(fit: CameraModelFit) -> dict[str, Any]:
     entry = {
         "model": fit.model,
-        "camera_matrix": fit.camera_matrix.tolist(),
-        "coefficients": fit.coefficients.tolist(),
+        "camera_matrix": fit.camera_matrix,
+        "coefficients": fit.coefficients,
         "rms_px": fit.rms_px,
         "max_px": fit.max_px,
-        "distance_m": _finite(fit.distance_m),
+        "distance_m": fit.distance_m,
         "largest_angle_deg": fit.largest_angle_deg,
-        "condition": _finite(fit.condition),
+        "condition": fit.condition,
     }
     if fit.model != "f_theta":
-        entry["opencv_camera_matrix"] = conventions.opencv_matrix(fit.camera_matrix).tolist()
+        entry["opencv_camera_matrix"] = conventions.opencv_matrix(fit.camera_matrix)
         entry["opencv_coefficients"] = distortion_coefficients(model_named(fit.model), fit.coefficients)
     return entry
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

@@ -7,12 +7,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from .._core import Camera, Film, InputError, Lens
-from ..calibration.arrays import Array
 from ..calibration.formats.colmap import camera_text
 from ..calibration.formats.colmap_images import HEADS, image_text, pose_text, text_content
 from ..calibration.transforms import turned
 from ..files import make_folder, write_whole
-from .conventions import Pose, relative_pose
+from .conventions import relative_pose
 from .fit import fit_camera_model
 from .models import model_named
 
@@ -39,7 +38,7 @@ def save_colmap(folder: str | os.PathLike[str], pictures: Mapping[str, Camera], 
     images = []
     for i, (name, camera) in enumerate(pictures.items(), start=1):
         camera_id = ids.setdefault(_key_of(camera), len(ids) + 1)
-        images.append(_image_line(i, camera.world_to_camera, camera_id, name))
+        images.append(image_text(i, turned(*camera.world_to_camera), camera_id, name))
         fits.line_of(camera)
     _write(folder, [f"{i} {fits.lines[key]}" for key, i in ids.items()], images, {})
 
@@ -59,7 +58,8 @@ def save_colmap_of_rig(
         raise InputError("a COLMAP model of a rig needs the pictures of at least one pose")
     cameras = [f"{i} {fits.line_of(camera)}" for i, camera in enumerate(rig.values(), start=1)]
     first, *others = (camera.world_to_camera for camera in rig.values())
-    sensors = [f"CAMERA {i} 1 {_pose_text(relative_pose(pose, first))}" for i, pose in enumerate(others, start=2)]
+    placed = [turned(*relative_pose(pose, first)) for pose in others]
+    sensors = [f"CAMERA {i} 1 {pose_text(pose)}" for i, pose in enumerate(placed, start=2)]
     images: list[str] = []
     frames: list[str] = []
     for moment, members in moments.items():
@@ -68,9 +68,9 @@ def save_colmap_of_rig(
         poses = [members[name].world_to_camera for name in rig]
         data = []
         for i, (name, pose) in enumerate(zip(rig, poses, strict=True), start=1):
-            images.append(_image_line(len(images) + 1, pose, i, f"{name}/{moment}"))
+            images.append(image_text(len(images) + 1, turned(*pose), i, f"{name}/{moment}"))
             data.append(f"CAMERA {i} {len(images)}")
-        frames.append(f"{len(frames) + 1} 1 {_pose_text(poses[0])} {len(data)} {' '.join(data)}")
+        frames.append(f"{len(frames) + 1} 1 {pose_text(turned(*poses[0]))} {len(data)} {' '.join(data)}")
     rigs = [" ".join([f"1 {len(cameras)} CAMERA 1", *sensors])]
     _write(folder, cameras, images, {"rigs.txt": (_RIGS, rigs), "frames.txt": (_FRAMES, frames)})
 
@@ -103,18 +103,6 @@ class _Fits:
         if key not in self.lines:
             self.lines[key] = camera_text(fit_camera_model(camera, self._model).calibration, NAMES[self._model])
         return self.lines[key]
-
-
-def _image_line(number: int, pose: Pose, camera: int, name: str) -> str:
-    return image_text(number, _transform(pose), camera, name)
-
-
-def _pose_text(pose: Pose) -> str:
-    return pose_text(_transform(pose))
-
-
-def _transform(pose: Pose) -> Array:
-    return turned(*pose)
 
 
 def _write(

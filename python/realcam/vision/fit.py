@@ -15,7 +15,7 @@ from ..calibration.models.distortion import BrownConrady
 from ..calibration.models.opencv_models import pinhole_model
 from ..calibration.models.projections import Equidistant
 from ..calibration.models.radial import RationalRadius
-from ..notebook import table_html
+from ..html_tables import html_table
 from . import conventions
 from .models import MODELS, RadialModel, distortion_coefficients, model_named
 from .regularised import condition_of, nearest_coefficients
@@ -75,7 +75,7 @@ class CameraModelFit:
             ("largest angle", f"{self.largest_angle_deg:.4g}°"),
             ("condition", f"{self.condition:.3g}"),
         ]
-        return table_html(rows)
+        return html_table(rows, align="left")
 
     @property
     def rms_px(self) -> float:

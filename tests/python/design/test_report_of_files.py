@@ -54,10 +54,10 @@ def test_fields_and_wavelengths_are_those_of_the_file(
 
 
 def test_three_of_few_and_of_many() -> None:
-    assert three_of([0, 20]).tolist() == [0, 14, 20]
-    assert three_of([0, 5, 14.5, 20]).tolist() == [0, 14.5, 20]
-    assert three_of([486.1, 587.6, 656.3], 587.6).tolist() == [486.1, 587.6, 656.3]
-    assert three_of([550], 550).tolist() == [550]
+    assert three_of([0, 20]) == [0, 14, 20]
+    assert three_of([0, 5, 14.5, 20]) == [0, 14.5, 20]
+    assert three_of([486.1, 587.6, 656.3], 587.6) == [486.1, 587.6, 656.3]
+    assert three_of([550], 550) == [550]
 
 
 @pytest.mark.filterwarnings("ignore:not in the file")

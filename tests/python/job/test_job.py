@@ -529,7 +529,7 @@ def contents(folder: Path) -> dict[Path, bytes]:
         (("work", "nowhere"), "nowhere is not the folder of a job: there is no such folder"),
         (("make", "nowhere.toml", "-o", "new"), "nowhere.toml"),
         (("make", "nowhere.toml", "-o", "JOB"), "this job exists already"),
-        (("make", "nowhere.toml", "-o", "new", "--tile", "8y8"), "expected pixels, 128 or 128x64"),
+        (("make", "nowhere.toml", "-o", "new", "--tile", "8y8"), "expected 1 or 2 whole numbers"),
     ],
 )
 def test_a_mistake_on_the_command_line_is_told_in_one_line(

@@ -203,10 +203,10 @@ def test_pages() -> None:
         def handle_starttag(self, tag: str, attrs: object) -> None:
             self.tags.add(tag)
 
-    from realcam.notebook import table_html
+    from realcam.html_tables import html_table
 
     page = Tags()
-    page.feed(table_html([[text, text] for text in TEXTS], ["a", "b"]))
+    page.feed(html_table([[text, text] for text in TEXTS], ["a", "b"]))
     assert page.tags == {"table", "thead", "tbody", "tr", "th", "td"}
 
 

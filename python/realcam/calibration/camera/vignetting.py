@@ -13,6 +13,7 @@ from numpy.polynomial import chebyshev
 
 from ..._core import Camera, InputError
 from ...files import record_input
+from ...rec709 import linear_of_srgb
 from ..arrays import Array
 from ..errors import CalibrationFileError
 from ..files.document import Document
@@ -140,7 +141,7 @@ def _flat_field(path: Path, linear: bool) -> Array:
         raise CalibrationFileError(f"{path}: is damaged, or holds values that are not finite")
     pixels = np.asarray(values, dtype=float).reshape(spec.height, spec.width, channels)
     if is_encoded:
-        pixels = np.where(pixels <= 0.04045, pixels / 12.92, ((pixels + 0.055) / 1.055) ** 2.4)  # IEC 61966-2-1
+        pixels = linear_of_srgb(pixels)
     mean: Array = pixels.mean(axis=-1)
     return mean
 

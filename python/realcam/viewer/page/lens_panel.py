@@ -12,12 +12,12 @@ from nicegui import events, run, ui
 
 from ..._core import InputError, Lens, LensFileError, RealcamError, lens_names
 from ...drawing.gallery import save_gallery
+from ...files import LENS_SUFFIXES
 from ..comparison import COMPARISONS, NOTHING
 from ..lens_reading import lens_from
 from .elements import LensGallery, show_choice
 from .window import Window
 
-LENS_SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")
 MAX_UPLOADED = 2 * 1024 * 1024  # bytes
 _EXPECTED_FILE = f"a lens file ({' '.join(LENS_SUFFIXES)}) of at most {MAX_UPLOADED >> 20} MiB"
 

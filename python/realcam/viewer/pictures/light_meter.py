@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import _core
+from ...rec709 import LUMINANCE
 from .picture_request import Point
 
 _METERED_PIXELS = 96  # width of the subsampled picture for metering, as in Camera.metered
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # of linear Rec. 709
 
 
 def middle_grey_lx_s(iso: float, compensation_ev: float) -> float:
@@ -43,5 +43,5 @@ def point_at(
     hits_m = depths_m[np.isfinite(depths_m)]
     return Point(
         distance_m=float(np.median(hits_m)) if hits_m.size else math.inf,
-        illuminance_lx=float(np.mean(exposure_lx_s[spot_pixels] @ _LUMINANCE)) / exposure_time_s,
+        illuminance_lx=float(np.mean(exposure_lx_s[spot_pixels] @ LUMINANCE)) / exposure_time_s,
     )
