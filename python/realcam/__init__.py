@@ -99,7 +99,9 @@ if TYPE_CHECKING:
         backpropagate_rays,
         ray_derivatives,
     )
+    from .derivatives.camera_parameters import CameraParameters
     from .derivatives.picture import render_filtered, render_gradient
+    from .derivatives.torch_picture import torch_render
     from .job import Job, JobStatus
     from .optimisation import (
         GlassMatch,
@@ -135,7 +137,9 @@ _TOOLS = {
     "analysis.image_simulation": "ImageSimulation image_simulation",  # loads scipy
     "calibration": "Calibration CalibrationFileError GeometryError PointStatus Vignetting",
     "derivatives": "Gradient RayDerivatives RayGradient Variable backpropagate_rays ray_derivatives",
+    "derivatives.camera_parameters": "CameraParameters",  # loads scipy
     "derivatives.picture": "render_filtered render_gradient",
+    "derivatives.torch_picture": "torch_render",
     "job": "Job JobStatus",
     "optimisation": "GlassMatch GlassSearch Operand Optimisation Targets nearest_glasses optimised with_better_glasses",
     "photography": "DepthOfField PhotographicFigures depth_of_field photographic_figures",
@@ -200,6 +204,7 @@ __all__ = [
     "Camera",
     "CameraKey",
     "CameraModelFit",
+    "CameraParameters",
     "CameraRays",
     "Cancelled",
     "Coating",
@@ -309,5 +314,6 @@ __all__ = [
     "save_colmap",
     "sensor_names",
     "tolerance_study",
+    "torch_render",
     "with_better_glasses",
 ]

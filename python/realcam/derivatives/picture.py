@@ -190,12 +190,12 @@ def _numbers_of(lens: Lens, parameters: Sequence[Parameter]) -> _Numbers:
             index, factor = _SINGLE[parameter]
             rates.append(({}, {index: factor}))
         elif parameter == "focus_distance_m":
-            of_focus = _focus_rates(lens)
+            of_focus = focus_rates(lens)
             for variable in of_focus:
                 variables.setdefault(variable.as_tuple(), variable)
             rates.append(({variable.as_tuple(): rate for variable, rate in of_focus.items()}, {}))
         elif parameter == "f_number":
-            rates.append(({}, {_STOP: _stop_rate(lens)}))
+            rates.append(({}, {_STOP: stop_rate(lens)}))
         else:
             raise InputError(
                 f"unknown parameter {parameter!r:.60}; expected a Variable or one of {', '.join(PARAMETERS)}"
@@ -217,7 +217,7 @@ def _rate(function: Callable[[float], NDArray[np.float64]], at: float) -> NDArra
     return (8 * near - far) / (12 * step)
 
 
-def _focus_rates(lens: Lens) -> dict[Variable, float]:
+def focus_rates(lens: Lens) -> dict[Variable, float]:
     """Derivatives of the lens's distances by its focus distance in metres: those of the solution of the focusing
     equation, by the implicit function theorem."""
     if not math.isfinite(lens.focus_distance_m):
@@ -233,7 +233,7 @@ def _focus_rates(lens: Lens) -> dict[Variable, float]:
     return {v: float(rate) for v, rate in zip(variables, rates, strict=True) if rate != 0}
 
 
-def _stop_rate(lens: Lens) -> float:
+def stop_rate(lens: Lens) -> float:
     """Derivative of the diaphragm's radius by the f-number, mm."""
     if lens.stop_semi_diameter_mm >= lens.surfaces[lens.stop_index].clear_semi_diameter_mm:
         raise InputError("the derivative by f_number does not exist wide open; stop the lens down first")

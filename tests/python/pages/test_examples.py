@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -118,3 +119,13 @@ def test_film_goes_from_the_lamps_to_the_chessmen() -> None:
     assert (begin.focus_distance_m, end.focus_distance_m) == pytest.approx((3.5, 2.0))
     assert end.focused(float("inf")).first_order().effective_focal_length_mm == pytest.approx(135)
     assert shot.shake is not None
+
+
+@pytest.mark.slow
+def test_torch_focus_finds_both_rings() -> None:
+    pytest.importorskip("torch", reason="torch is an extra")
+    command = [sys.executable, str(EXAMPLES / "torch_focus.py")]
+    printed = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300).stdout
+    focus, f_number = re.search(r"focus ([\d.]+) m, f/([\d.]+)\n$", printed).groups()
+    # The start is 0.6 m and 0.8 away.
+    assert abs(float(focus) - 2.6) < 0.06 and abs(float(f_number) - 3.2) < 0.04
