@@ -101,6 +101,7 @@ if TYPE_CHECKING:
     )
     from .derivatives.camera_parameters import CameraParameters
     from .derivatives.picture import render_filtered, render_gradient
+    from .derivatives.picture_fit import PictureFit, fit_pictures
     from .derivatives.torch_picture import torch_render
     from .job import Job, JobStatus
     from .optimisation import (
@@ -139,6 +140,7 @@ _TOOLS = {
     "derivatives": "Gradient RayDerivatives RayGradient Variable backpropagate_rays ray_derivatives",
     "derivatives.camera_parameters": "CameraParameters",  # loads scipy
     "derivatives.picture": "render_filtered render_gradient",
+    "derivatives.picture_fit": "PictureFit fit_pictures",
     "derivatives.torch_picture": "torch_render",
     "job": "Job JobStatus",
     "optimisation": "GlassMatch GlassSearch Operand Optimisation Targets nearest_glasses optimised with_better_glasses",
@@ -248,6 +250,7 @@ __all__ = [
     "OpticalFlow",
     "Optimisation",
     "PhotographicFigures",
+    "PictureFit",
     "Plan",
     "PlanDecision",
     "PointStatus",
@@ -295,6 +298,7 @@ __all__ = [
     "devices",
     "effects",
     "fit_camera_model",
+    "fit_pictures",
     "glass_names",
     "image_simulation",
     "lens_names",

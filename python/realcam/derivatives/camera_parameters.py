@@ -104,37 +104,27 @@ class CameraParameters:
 
         adjoint, arguments: as for rc.render_gradient.
         """
-        local, by_values = self._local(values)
-        found = render_gradient(scene, self.camera_at(values), local, adjoint, **arguments)
-        return np.tensordot(by_values.T, found, 1)
+        return render_gradient(scene, self.camera_at(values), self.directions(values), adjoint, **arguments)
 
-    def _local(self, values: ArrayLike) -> tuple[list[Parameter], Doubles]:
-        """Parameters of rc.render_gradient at the camera of these values, L in all, and their derivatives by the
-        values, (L, P)."""
+    def directions(self, values: ArrayLike) -> list[dict[Parameter, float]]:
+        """Returns the parameters of rc.render_gradient, at the camera of these values, that are its derivatives by the
+        values."""
         at = self._named(values)
-        rows: dict[object, tuple[Parameter, Doubles]] = {}
-
-        def add(parameter: Parameter, column: int, rate: float) -> None:
-            if rate != 0:
-                key = parameter.as_tuple() if isinstance(parameter, Variable) else parameter
-                rows.setdefault(key, (parameter, np.zeros(len(self.parameters))))[1][column] += rate
-
         rotation = self._rotation(at)
         of_position, of_rotation = rotation_matrix(rotation).T, right_jacobian(rotation)
-        for column, parameter in enumerate(self.parameters):
+
+        def direction(parameter: Parameter) -> dict[Parameter, float]:
             for names, matrix in ((_POSITION, of_position), (_ROTATION, of_rotation)):
                 if parameter in names:
-                    for name, rate in zip(names, matrix[:, names.index(parameter)], strict=True):
-                        add(name, column, rate)
-            if parameter in _SHIFT or isinstance(parameter, Variable):
-                add(parameter, column, 1.0)
+                    return dict(zip(names, matrix[:, names.index(parameter)].tolist(), strict=True))
             # The rings' scales are those of the lens of `camera`, whose surfaces are not changed.
-            elif parameter == "focus_distance_m":
-                for variable, rate in focus_rates(self._turned(at)).items():
-                    add(variable, column, rate)
-            elif parameter == "f_number":
-                add("f_number", column, stop_rate(self._turned(at)) / stop_rate(self.camera_at(values).lens))
-        return [parameter for parameter, _ in rows.values()], np.array([row for _, row in rows.values()])
+            if parameter == "focus_distance_m":
+                return {**focus_rates(self._turned(at))}
+            if parameter == "f_number":
+                return {"f_number": stop_rate(self._turned(at)) / stop_rate(self.camera_at(values).lens)}
+            return {parameter: 1.0}
+
+        return [direction(parameter) for parameter in self.parameters]
 
     @property
     def _pose(self) -> tuple[Doubles, Doubles]:

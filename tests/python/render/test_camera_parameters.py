@@ -45,13 +45,13 @@ def test_pose_derivatives_are_those_of_the_axes() -> None:
     camera = corner_camera().replace(position=(1, 2, 3), look_at=(0.3, 1, -2), up=(0.1, 1, 0.2))
     family, step = rc.CameraParameters(camera, POSE), 1e-4
     values = np.array([0.3, -0.2, 0.1, 12.0, -7.0, 25.0])
-    local, by_values = family._local(values)
+    directions = family.directions(values)
     axes = axes_of(family.camera_at(values))
     for column in range(6):
         up, down = (family.camera_at(values + sign * step * np.eye(6)[column]) for sign in (1, -1))
         moved = axes.T @ (np.array(up.position) - down.position) / (2 * step)
         turned = np.degrees(axes.T @ (axes_of(up) - axes_of(down)) / (2 * step))
-        found = dict(zip(local, by_values[:, column], strict=True))
+        found = directions[column]
         # Differences of second order: the rotation's third derivative is 1 rad^-2, and a step 1.7e-6 rad.
         np.testing.assert_allclose([found.get(name, 0) for name in POSE[:3]], moved, atol=1e-9)
         wanted = [turned[2, 1], turned[0, 2], turned[1, 0]]
@@ -88,7 +88,7 @@ def test_derivatives_by_values_equal_differences() -> None:
 def test_focus_and_a_distance_that_it_moves_are_added() -> None:
     lens = rc.Lens.load("macro-105mm").focused(1.0).stopped_down(5.6)
     family = rc.CameraParameters(rc.Camera(lens), ["focus_distance_m"])
-    moved = [v for v in family._local([0.8])[0] if isinstance(v, rc.Variable) and v.quantity == "thickness"]
+    moved = [v for v in family.directions([0.8])[0] if isinstance(v, rc.Variable) and v.quantity == "thickness"]
     gap = rc.Variable.thickness(moved[0].surface)
     both = rc.CameraParameters(family.camera, ["focus_distance_m", gap])
     thickness = both.camera_at(both.values + np.array((-0.2, 0.01))).lens.surfaces[gap.surface].thickness_mm

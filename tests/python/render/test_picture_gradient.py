@@ -152,6 +152,14 @@ def test_forward_is_the_transpose_of_reverse() -> None:
     assert np.all(np.abs((pictures * ADJOINT).sum((1, 2, 3)) - reverse) < 1e-5 * sizes)
 
 
+def test_a_direction_is_the_sum_of_its_parameters() -> None:
+    scene, camera = stripes(), corner_camera()
+    gap = rc.Variable.thickness(1)
+    directions = [{"focus_distance_m": 2.0, gap: -3.0}, "focus_distance_m", gap]
+    both, focus, thickness = rc.render_gradient(scene, camera, directions, ADJOINT, spp=4, max_bounces=0)
+    assert both == pytest.approx(2 * focus - 3 * thickness, abs=1e-9 * max(abs(focus), abs(thickness)))
+
+
 def test_even_light_has_no_derivative_by_pose() -> None:
     # The control variate is the radiance itself.
     gradient = rc.render_gradient(sky(), corner_camera(), ["right_m", "up_m", "yaw_deg"], ADJOINT, spp=4)
