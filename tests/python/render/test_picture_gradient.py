@@ -166,6 +166,23 @@ def test_even_light_has_no_derivative_by_pose() -> None:
     assert np.all(np.abs(gradient) < 1e-4)
 
 
+def test_even_light_has_none_at_a_fisheyes_border() -> None:
+    """Interior and boundary cancel. Rays that leave the steep first surface by its rim, 110 degrees from the axis, cross
+    the rim's plane on the other side of the rim."""
+    lens = rc.Lens.load("fisheye-6mm-220deg").focused(1).stopped_down(8)
+    camera = rc.Camera(lens, film=rc.Film(0.8, 0.8, (8, 8), shift_mm=(11.1, 0.7)), exposure_time_s=1.0)
+    parameters = ["right_m", "backward_m"]
+    found, error = estimate(
+        lambda seed: rc.render_gradient(sky(), camera, parameters, np.ones((8, 8, 3)), spp=64, seed=seed, control_spp=0)
+    )
+    assert np.all(np.abs(found) < ERRORS * error)
+    boundary = rc._core._PictureGradient(sky(), camera, rc.RenderSettings(effects=()), "tent", []).reverse(
+        np.ones((8, 8, 3)), None, seed=0, spp=1, outline_spp=64, terms="boundary"
+    )
+    # The boundary of one of the two parameters alone is many standard errors: the test can fail.
+    assert abs(1000 * boundary[8]) > 20 * error[1]
+
+
 def test_filtered_picture_is_the_tent_of_a_finer_picture() -> None:
     scene, camera = stripes(), corner_camera()
     # 16 x 16 fine pixels per pixel, on a film that is one pixel wider on each side.
