@@ -21,7 +21,10 @@ GROUPS = {
         "Optimisation", "Targets", "Operand", "Variable", "optimised", "GlassMatch", "GlassSearch", "nearest_glasses",
         "with_better_glasses",
     ),
-    "Derivatives": ("Gradient", "RayDerivatives", "RayGradient", "backpropagate_rays", "ray_derivatives"),
+    "Derivatives": (
+        "CameraParameters", "Gradient", "PictureFit", "RayDerivatives", "RayGradient", "backpropagate_rays", "fit_pictures",
+        "ray_derivatives", "render_filtered", "render_gradient", "torch_render",
+    ),
     "Tolerances": (
         "Tolerances",
         "tolerance_study",

@@ -105,8 +105,12 @@ if TYPE_CHECKING:
     from .derivatives import Variable as Variable
     from .derivatives import backpropagate_rays as backpropagate_rays
     from .derivatives import ray_derivatives as ray_derivatives
+    from .derivatives.camera_parameters import CameraParameters as CameraParameters
     from .derivatives.picture import render_filtered as render_filtered
     from .derivatives.picture import render_gradient as render_gradient
+    from .derivatives.picture_fit import PictureFit as PictureFit
+    from .derivatives.picture_fit import fit_pictures as fit_pictures
+    from .derivatives.torch_picture import torch_render as torch_render
     from .job import Job as Job
     from .job import JobStatus as JobStatus
     from .optimisation import GlassMatch as GlassMatch
@@ -150,7 +154,10 @@ _TOOLS = {
     "analysis.image_simulation": "ImageSimulation image_simulation",  # loads scipy
     "calibration": "Calibration CalibrationFileError GeometryError PointStatus Vignetting",
     "derivatives": "Gradient RayDerivatives RayGradient Variable backpropagate_rays ray_derivatives",
+    "derivatives.camera_parameters": "CameraParameters",  # loads scipy
     "derivatives.picture": "render_filtered render_gradient",
+    "derivatives.picture_fit": "PictureFit fit_pictures",
+    "derivatives.torch_picture": "torch_render",
     "job": "Job JobStatus",
     "optimisation": "GlassMatch GlassSearch Operand Optimisation Targets nearest_glasses optimised with_better_glasses",
     "photography": "DepthOfField PhotographicFigures depth_of_field photographic_figures",

@@ -135,9 +135,13 @@ int OutlineRays::find(const TangentPath& path, const DirectionLine (&lines)[kLan
                 const Vec3d p = crossing.direction[i], moved = crossing.origin_tangent[i];
                 const double rise = moved.z / p.z;
                 const double speed = edge.normal.x * (moved.x - rise * p.x) + edge.normal.y * (moved.y - rise * p.y);
+                // Rays that are flatter than a steep surface pass its rim's plane outside the rim if they pass the
+                // surface inside it.
+                const double side = (speed > 0) == (low_passes[n][i] != 0) ? 1 : -1;
+                const Vec2d normal = {side * edge.normal.x, side * edge.normal.y};
                 point = {t[i],
                          k,
-                         {edge.normal.x, edge.normal.y, -(edge.normal.x * p.x + edge.normal.y * p.y) / p.z},
+                         {normal.x, normal.y, -(normal.x * p.x + normal.y * p.y) / p.z},
                          edge.stop_rate,
                          1 / std::fabs(speed),
                          rays.origin[i],

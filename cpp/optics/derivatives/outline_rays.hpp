@@ -18,7 +18,7 @@ struct OutlinePoint {
     double t = 0;  ///< position on the line; 0: no point was found
     int surface = 0;  ///< index of the surface on the path towards the scene
     /// Tangent of the ray's optical direction, in the surface's frame, for TangentPath::trace: its x and y are the unit
-    /// normal of the rim, away from the light that passes.
+    /// normal of the rim, towards the rays that it blocks.
     Vec3d tangent{};
     double stop_rate = 0;  ///< motion of the rim along the normal per growth of the diaphragm's radius; 0 except on it
     double inverse_speed = 0;  ///< inverse of the speed, per t, with which the ray moves across the rim, 1/mm

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +23,10 @@ if TYPE_CHECKING:
     from .._core import _SettingsKwargs
 
 Parameter = str | Variable
+#: A parameter, or a direction: rates of some parameters.
+Direction = Parameter | Mapping[Parameter, float]
 Floats = NDArray[np.float32]
+_Key = tuple[str, int, int, int]  # Variable.as_tuple
 
 # Numbers of a camera behind those of the lens, as the core orders them: _PictureGradient.
 _FILM, _POSE, _STOP, _OTHERS = 0, 6, 12, 13
@@ -67,7 +71,7 @@ class _Numbers:
 def render_gradient(
     scene: Scene,
     camera: Camera,
-    parameters: Parameter | Sequence[Parameter],
+    parameters: Direction | Sequence[Direction],
     adjoint: ArrayLike | None = None,
     *,
     filter: str = "tent",
@@ -85,7 +89,8 @@ def render_gradient(
         against the axis, through the film's centre;
       "film_shift_right_mm", "film_shift_up_mm": Film.shift_mm; "film_tilt_x_deg", "film_tilt_y_deg": rotation of the
         film about its own axes;
-      "focus_distance_m", "f_number": settings of the lens's rings.
+      "focus_distance_m", "f_number": settings of the lens's rings;
+      a dict of such parameters and their rates: a parameter by which all of these change.
     adjoint: (H, W, 3), derivatives of a function of the picture's exposure (lux seconds) by its pixels; returns the
       derivatives of the function by the parameters, (P,). None: returns those of the picture, (P, H, W, 3).
     filter: pixel filter of the picture, "tent" (two pixels wide) or "gaussian" (three pixels wide, standard deviation
@@ -99,7 +104,7 @@ def render_gradient(
     The derivative is taken at fixed rays of the scene (docs/picture-derivatives.md). Raises InputError for what is not
     supported, by name.
     """
-    if isinstance(parameters, (str, Variable)):
+    if isinstance(parameters, (str, Variable, Mapping)):
         parameters = [parameters]
     final = _final_settings(settings, changes)
     numbers = _numbers_of(camera.lens, parameters)
@@ -173,41 +178,50 @@ def _control(of_picture: _core._PictureGradient, seed: int, spp: int) -> Floats:
     return np.where(even > 0, of_picture.picture(**samples) / np.where(even > 0, even, 1), 0)
 
 
-def _numbers_of(lens: Lens, parameters: Sequence[Parameter]) -> _Numbers:
+def _numbers_of(lens: Lens, parameters: Sequence[Direction]) -> _Numbers:
     """Derivatives of the camera's numbers by the parameters. Raises InputError."""
     if not parameters:
         raise InputError(f"parameters must have at least one Variable or name: {', '.join(PARAMETERS)}")
-    if len({p if isinstance(p, str) else p.as_tuple() for p in parameters}) < len(parameters):
+    single = [p for p in parameters if not isinstance(p, Mapping)]
+    if len({p if isinstance(p, str) else p.as_tuple() for p in single}) < len(single):
         raise InputError("parameters must be distinct")
-    rates: list[tuple[dict[tuple[str, int, int, int], float], dict[int, float]]] = []
-    variables: dict[tuple[str, int, int, int], Variable] = {}
-    for parameter in parameters:
-        if isinstance(parameter, Variable):
-            checked(lens, [parameter])
-            variables.setdefault(parameter.as_tuple(), parameter)
-            rates.append(({parameter.as_tuple(): 1.0}, {}))
-        elif parameter in _SINGLE:
-            index, factor = _SINGLE[parameter]
-            rates.append(({}, {index: factor}))
-        elif parameter == "focus_distance_m":
-            of_focus = _focus_rates(lens)
-            for variable in of_focus:
+    # Rates of variables of the lens, and of the numbers behind them, for each parameter.
+    rows: list[tuple[dict[_Key, float], dict[int, float]]] = []
+    variables: dict[_Key, Variable] = {}
+    for direction in parameters:
+        of_lens: dict[_Key, float] = defaultdict(float)
+        of_others: dict[int, float] = defaultdict(float)
+        for parameter, factor in (direction if isinstance(direction, Mapping) else {direction: 1.0}).items():
+            by_variable, by_other = _rates_of(lens, parameter)
+            for variable, rate in by_variable.items():
                 variables.setdefault(variable.as_tuple(), variable)
-            rates.append(({variable.as_tuple(): rate for variable, rate in of_focus.items()}, {}))
-        elif parameter == "f_number":
-            rates.append(({}, {_STOP: _stop_rate(lens)}))
-        else:
-            raise InputError(
-                f"unknown parameter {parameter!r:.60}; expected a Variable or one of {', '.join(PARAMETERS)}"
-            )
+                of_lens[variable.as_tuple()] += factor * rate
+            for index, rate in by_other.items():
+                of_others[index] += factor * rate
+        rows.append((of_lens, of_others))
     order = {key: index for index, key in enumerate(variables)}
     directions = np.zeros((len(parameters), len(order) + _OTHERS))
-    for row, (of_lens, of_others) in zip(directions, rates, strict=True):
+    for row, (of_lens, of_others) in zip(directions, rows, strict=True):
         for key, rate in of_lens.items():
             row[order[key]] = rate
         for index, rate in of_others.items():
             row[len(order) + index] = rate
     return _Numbers(list(variables.values()), directions)
+
+
+def _rates_of(lens: Lens, parameter: Parameter) -> tuple[dict[Variable, float], dict[int, float]]:
+    """Derivatives of variables of the lens, and of the camera's other numbers, by a parameter. Raises InputError."""
+    if isinstance(parameter, Variable):
+        checked(lens, [parameter])
+        return {parameter: 1.0}, {}
+    if parameter in _SINGLE:
+        index, factor = _SINGLE[parameter]
+        return {}, {index: factor}
+    if parameter == "focus_distance_m":
+        return focus_rates(lens), {}
+    if parameter == "f_number":
+        return {}, {_STOP: stop_rate(lens)}
+    raise InputError(f"unknown parameter {parameter!r:.60}; expected a Variable or one of {', '.join(PARAMETERS)}")
 
 
 def _rate(function: Callable[[float], NDArray[np.float64]], at: float) -> NDArray[np.float64]:
@@ -217,7 +231,7 @@ def _rate(function: Callable[[float], NDArray[np.float64]], at: float) -> NDArra
     return (8 * near - far) / (12 * step)
 
 
-def _focus_rates(lens: Lens) -> dict[Variable, float]:
+def focus_rates(lens: Lens) -> dict[Variable, float]:
     """Derivatives of the lens's distances by its focus distance in metres: those of the solution of the focusing
     equation, by the implicit function theorem."""
     if not math.isfinite(lens.focus_distance_m):
@@ -233,7 +247,7 @@ def _focus_rates(lens: Lens) -> dict[Variable, float]:
     return {v: float(rate) for v, rate in zip(variables, rates, strict=True) if rate != 0}
 
 
-def _stop_rate(lens: Lens) -> float:
+def stop_rate(lens: Lens) -> float:
     """Derivative of the diaphragm's radius by the f-number, mm."""
     if lens.stop_semi_diameter_mm >= lens.surfaces[lens.stop_index].clear_semi_diameter_mm:
         raise InputError("the derivative by f_number does not exist wide open; stop the lens down first")

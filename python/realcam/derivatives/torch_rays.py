@@ -7,25 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._core import InputError, Lens, Surface
+from .._core import InputError, Lens
 from .rays import backpropagate_rays
-from .variable import Variable, checked
+from .variable import SETTABLE, Variable, checked, with_values
 
 if TYPE_CHECKING:
     import torch
-
-
-#: Quantities that Variable.set supports.
-SETTABLE = ("curvature", "thickness", "conic", "aspheric", "index", "tilt", "decentre")
-
-
-def with_values(lens: Lens, variables: Sequence[Variable], values: Sequence[float]) -> Lens:
-    """Returns the lens with these values of its variables. Raises InputError if that lens cannot be built."""
-    surfaces: dict[int, Surface] = {}
-    for variable, value in zip(variables, values, strict=True):
-        surface = surfaces.get(variable.surface, lens.surfaces[variable.surface])
-        surfaces[variable.surface] = variable.set(surface, float(value))
-    return lens.with_surfaces(surfaces)
 
 
 def trace_with_torch(

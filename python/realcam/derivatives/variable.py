@@ -26,6 +26,9 @@ QUANTITIES = (
     "film_distance",
 )
 
+#: Quantities that Variable.set supports.
+SETTABLE = ("curvature", "thickness", "conic", "aspheric", "index", "tilt", "decentre")
+
 
 @dataclass(frozen=True)
 class Variable:
@@ -179,3 +182,12 @@ def checked(lens: Lens, variables: Sequence[Variable]) -> list[Variable]:
         if variable.quantity not in QUANTITIES:
             raise InputError(f'unknown quantity "{variable.quantity}"; expected one of {", ".join(QUANTITIES)}')
     return list(variables)
+
+
+def with_values(lens: Lens, variables: Sequence[Variable], values: Sequence[float]) -> Lens:
+    """Returns the lens with these values of its variables. Raises InputError if that lens cannot be built."""
+    surfaces: dict[int, Surface] = {}
+    for variable, value in zip(variables, values, strict=True):
+        surface = surfaces.get(variable.surface, lens.surfaces[variable.surface])
+        surfaces[variable.surface] = variable.set(surface, float(value))
+    return lens.with_surfaces(surfaces)

@@ -175,3 +175,13 @@ def test_the_gallery_shows_each_of_its_shots() -> None:
         assert f"realcam render examples/gallery/{name}.toml -o {name}.jpg --denoise" in page
         assert f"](images/gallery-{name}.jpg)" in page
         assert (EXAMPLES.parent / "docs" / "images" / f"gallery-{name}.jpg").stat().st_size < 150_000
+
+
+@pytest.mark.slow
+def test_torch_focus_finds_both_rings() -> None:
+    pytest.importorskip("torch", reason="torch is an extra")
+    command = [sys.executable, str(EXAMPLES / "torch_focus.py")]
+    printed = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300).stdout
+    focus, f_number = re.search(r"focus ([\d.]+) m, f/([\d.]+)\n$", printed).groups()
+    # The start is 0.6 m and 0.8 away.
+    assert abs(float(focus) - 2.6) < 0.06 and abs(float(f_number) - 3.2) < 0.04

@@ -152,6 +152,37 @@ def test_forward_is_the_transpose_of_reverse() -> None:
     assert np.all(np.abs((pictures * ADJOINT).sum((1, 2, 3)) - reverse) < 1e-5 * sizes)
 
 
+def test_a_direction_is_the_sum_of_its_parameters() -> None:
+    scene, camera = stripes(), corner_camera()
+    gap = rc.Variable.thickness(1)
+    directions = [{"focus_distance_m": 2.0, gap: -3.0}, "focus_distance_m", gap]
+    both, focus, thickness = rc.render_gradient(scene, camera, directions, ADJOINT, spp=4, max_bounces=0)
+    assert both == pytest.approx(2 * focus - 3 * thickness, abs=1e-9 * max(abs(focus), abs(thickness)))
+
+
+def test_even_light_has_no_derivative_by_pose() -> None:
+    # The control variate is the radiance itself.
+    gradient = rc.render_gradient(sky(), corner_camera(), ["right_m", "up_m", "yaw_deg"], ADJOINT, spp=4)
+    assert np.all(np.abs(gradient) < 1e-4)
+
+
+def test_even_light_has_none_at_a_fisheyes_border() -> None:
+    """Interior and boundary cancel. Rays that leave the steep first surface by its rim, 110 degrees from the axis, cross
+    the rim's plane on the other side of the rim."""
+    lens = rc.Lens.load("fisheye-6mm-220deg").focused(1).stopped_down(8)
+    camera = rc.Camera(lens, film=rc.Film(0.8, 0.8, (8, 8), shift_mm=(11.1, 0.7)), exposure_time_s=1.0)
+    parameters = ["right_m", "backward_m"]
+    found, error = estimate(
+        lambda seed: rc.render_gradient(sky(), camera, parameters, np.ones((8, 8, 3)), spp=64, seed=seed, control_spp=0)
+    )
+    assert np.all(np.abs(found) < ERRORS * error)
+    boundary = rc._core._PictureGradient(sky(), camera, rc.RenderSettings(effects=()), "tent", []).reverse(
+        np.ones((8, 8, 3)), None, seed=0, spp=1, outline_spp=64, terms="boundary"
+    )
+    # The boundary of one of the two parameters alone is many standard errors: the test can fail.
+    assert abs(1000 * boundary[8]) > 20 * error[1]
+
+
 def test_filtered_picture_is_the_tent_of_a_finer_picture() -> None:
     scene, camera = stripes(), corner_camera()
     # 16 x 16 fine pixels per pixel, on a film that is one pixel wider on each side.
