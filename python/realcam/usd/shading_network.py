@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from pxr import Gf, Sdf, UsdShade
@@ -56,10 +56,13 @@ class ShadingNetwork:
         port = self._surface.GetInput(name) if self._surface else None
         if not port:
             return default
-        value = self._resolved(port, default)
+        value, has_channels = self._resolved(port, default), name in _COLOURS or name == "normal"
+        if isinstance(value, Sampled) and value.output == "rgb" and not has_channels:
+            self._opened.notices.add(self.path, f"{name}: is connected to rgb; its r is used")
+            return replace(value, output="r")
         if isinstance(value, (Sampled, Primvar)):
             return value
-        if name in _COLOURS or name == "normal":
+        if has_channels:
             return _triple(value, default)
         if isinstance(default, str):
             return str(value)
@@ -97,6 +100,10 @@ class ShadingNetwork:
         return default if value is None else value
 
     def _sampled(self, shader: UsdShade.Shader, output: str, default: Any) -> Any:
+        if output not in ("rgb", *"rgba"):
+            text = f"expected the output rgb, r, g, b or a; found {output}; it is left out"
+            self._opened.notices.add(shader.GetPath(), text)
+            return default
         fallback = tuple(self._value(shader, "fallback", Gf.Vec4f(0, 0, 0, 1)))
         constant = fallback[:3] if output == "rgb" else fallback["rgba".find(output)]
         path = self._value(shader, "file", Sdf.AssetPath())
