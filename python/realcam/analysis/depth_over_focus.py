@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import math
 import textwrap
 from dataclasses import dataclass
 
@@ -12,7 +11,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import InputError, Lens
-from ..photography.depth import blur_diameter_mm, sharp_ranges
+from ..photography.depth import blur_diameter_mm, sharp_ranges, usual_circle_mm
 from ..photography.formulas import ThinLens
 from ..short_text import ShortText
 from . import style
@@ -60,7 +59,7 @@ def depth_over_focus(
     open_f_number = lens.f_number
     stops = open_f_number * np.array([1.0, 2.0, 4.0]) if f_numbers is None else numbers_of(f_numbers, "f_numbers")
     lenses = [lens if stop == open_f_number else lens.stopped_down(float(stop)) for stop in stops]
-    circle = math.hypot(*lens.film_mm) / 1500 if circle_of_confusion_mm is None else circle_of_confusion_mm
+    circle = usual_circle_mm(lens.film_mm) if circle_of_confusion_mm is None else circle_of_confusion_mm
     if focus_m is None:
         thin = ThinLens.of(lenses[int(np.argmin(stops))])
         nearest = max(lens.nearest_focus_m, 12e-3 * thin.focal_length_mm)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import InputError, Lens, RayBundle
-from ..fields import FieldPosition, field_arguments
+from ..fields import FieldPosition, angle_of_height, field_arguments
 
 Doubles = NDArray[np.float64]
 LINE_F_NM, LINE_D_NM, LINE_C_NM = 486.1327, 587.5618, 656.2725  # Fraunhofer lines
@@ -47,8 +47,13 @@ class Bundles:
 
     @cached_property
     def largest_field_deg(self) -> float:
-        """Field angle of the film's corner, or slightly inside the edge of the illuminated field if that is smaller."""
-        return _largest_field_deg(self.lens, self)
+        """Field angle of the film's corner, or slightly inside the edge of the illuminated field if that is smaller.
+
+        Raises InputError if no axial light passes.
+        """
+        corner = 0.5 * math.hypot(*self.lens.film_mm)
+        angle_deg, height_mm = angle_of_height(self.lens, corner, self.object_distance_m)
+        return angle_deg if height_mm > 0.999 * corner else 0.99 * angle_deg
 
 
 def bundles_of(lens: Lens, object_distance_m: float | None, bundles: Bundles | None) -> Bundles:
@@ -164,39 +169,6 @@ def _height_mm(bundles: Bundles, field_deg: float) -> float:
         return math.hypot(*bundles.chief(field_deg, bundles.lens.wavelength_nm).chief_ray_mm)
     except InputError:
         return math.nan
-
-
-def _largest_field_deg(lens: Lens, bundles: Bundles) -> float:
-    """Field angle of the film's corner within 0.1% of its height, or 0.99 times the angle at which the light ends.
-
-    Regula falsi between the bounds `low` and `high`; a dark upper bound has no height, and is bisected. Raises
-    InputError if no axial light passes.
-    """
-    corner = 0.5 * math.hypot(*lens.film_mm)
-    if math.isnan(_height_mm(bundles, 0.0)):
-        raise InputError(f'no axial light passes lens "{lens.name}"')
-    focal = abs(lens.first_order().effective_focal_length_mm)
-    low, low_height = 0.0, 0.0
-    high, high_height = 180.0, math.nan
-    guess = math.degrees(math.atan2(corner, focal)) if math.isfinite(focal) and focal > 0 else 10.0
-    for _ in range(24):
-        height = _height_mm(bundles, guess)
-        if abs(height - corner) < 1e-3 * corner:
-            return guess
-        if height < corner:
-            low, low_height = guess, height
-        else:
-            high, high_height = guess, height
-        if high - low < 1e-3 * high:
-            break
-        if math.isnan(high_height):
-            # No upper height yet: extrapolate linearly from the axis, or bisect towards the dark end.
-            extrapolated = low * corner / low_height * 1.001 if low_height > 0 else math.inf
-            guess = extrapolated if low < extrapolated < high else 0.5 * (low + high)
-        else:
-            fraction = (corner - low_height) / (high_height - low_height)
-            guess = low + min(max(fraction, 0.02), 0.98) * (high - low)
-    return 0.99 * low
 
 
 def default_frequencies_per_mm(lens: Lens) -> Doubles:

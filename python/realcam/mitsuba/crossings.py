@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from .._core import InputError, Lens, Surface, _iris_apothem_mm
+from ..dispersion import WavelengthVariable, media_indices
 
 # Wavelength range of Mitsuba's sensors, nm.
 WAVELENGTHS_NM = (360.0, 830.0)
-# Refractive indices are nearly polynomials of 1 / (wavelength - POLE_NM), which like them increases in the ultraviolet.
-POLE_NM = 200.0
-# Degree of these polynomials. The fit's error is then below float32's resolution for all glasses with a dispersion
-# formula.
+# Variable of the wavelength: -1 at the longest and 1 at the shortest.
+VARIABLE = WavelengthVariable.between(WAVELENGTHS_NM[1], -1, WAVELENGTHS_NM[0], 1)
+# Degree of the polynomials of indices. The fit's error is then below float32's resolution for all glasses with a
+# dispersion formula.
 DEGREE = 6
 
 
@@ -45,8 +45,8 @@ class Iris:
 class Crossing:
     """One surface, in the frame of its vertex. sign_in, sign_out: signs of the ray's z direction before and after it.
 
-    index_change: n'^2 / n^2 - 1 at the design wavelength. index_terms: n'^2 / n^2 - 1 as a polynomial of
-    `wavelength_variable`, the constant first; empty if it does not depend on the wavelength.
+    index_change: n'^2 / n^2 - 1 at the design wavelength. index_terms: n'^2 / n^2 - 1 as a polynomial of VARIABLE, the
+    constant first; empty if it does not depend on the wavelength.
     """
 
     vertex_mm: float  #: z of the vertex
@@ -60,12 +60,6 @@ class Crossing:
     sign_out: int
     index_change: float
     index_terms: tuple[float, ...]
-
-
-def wavelength_variable(nm: Any) -> Any:
-    """Maps wavelengths to -1 at the longest and 1 at the shortest. nm: a number, an array or a Dr.Jit value."""
-    low, high = (1 / (end - POLE_NM) for end in reversed(WAVELENGTHS_NM))
-    return (2 / (high - low)) / (nm - POLE_NM) - (high + low) / (high - low)
 
 
 def check_expressible(lens: Lens) -> None:
@@ -130,14 +124,6 @@ def crossings_to_scene(crossings: list[Crossing]) -> list[Crossing]:
     return [back(crossing) for crossing in reversed(crossings)]
 
 
-def index_behind(lens: Lens, index: int, nm: float) -> float:
-    """Refractive index behind the surface with this index; -1: before the first surface."""
-    for surface in reversed(lens.surfaces[: index + 1]):
-        if surface.type == "refracting":
-            return surface.material.index(nm)
-    return 1.0
-
-
 def _rim_mm(lens: Lens, index: int) -> float:
     """Clear semi-diameter of a surface, or radius of a circular stop."""
     clear = lens.surfaces[index].clear_semi_diameter_mm
@@ -174,15 +160,14 @@ def _asphere(surface: Surface) -> Asphere | None:
 
 def _index_change(lens: Lens, index: int, nm: float) -> float:
     """n'^2 / n^2 - 1 at a surface, for light towards the film."""
-    ratio = index_behind(lens, index, nm) / index_behind(lens, index - 1, nm)
-    return ratio * ratio - 1
+    indices = media_indices(lens, nm)
+    return (indices[index + 1] / indices[index]) ** 2 - 1
 
 
 def _index_terms(lens: Lens, index: int) -> tuple[float, ...]:
-    """Polynomial of _index_change over wavelength_variable; empty if it is constant."""
+    """Polynomial of _index_change over VARIABLE; empty if it is constant."""
     x = np.cos(np.pi * (np.arange(32) + 0.5) / 32)
-    zero, slope = wavelength_variable(np.inf), wavelength_variable(POLE_NM + 1) - wavelength_variable(np.inf)
-    change = np.array([_index_change(lens, index, nm) for nm in POLE_NM + slope / (x - zero)])
+    change = np.array([_index_change(lens, index, nm) for nm in VARIABLE.wavelength_nm(x)])
     return () if np.ptp(change) == 0 else _fit(x, change)
 
 

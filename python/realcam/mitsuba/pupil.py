@@ -8,7 +8,7 @@ import drjit as dr
 import mitsuba as mi
 
 from .._core import Lens, _pupil_table
-from .crossings import index_behind
+from ..dispersion import media_indices
 from .tables import Table
 from .trace import opaque
 
@@ -27,7 +27,7 @@ class Pupil:
         self.rows, self.sectors, _ = outline.shape
         self.nodes, self.outline = Table(nodes), Table(outline)
         self.image_radius_mm = opaque(image_radius_mm)
-        self.index_squared = index_behind(lens, len(lens.surfaces) - 1, lens.wavelength_nm) ** 2
+        self.index_squared = media_indices(lens, lens.wavelength_nm)[-1] ** 2
 
     def sample(self, x: Any, y: Any, u: Any) -> tuple[Any, Any]:
         """Samples an optical direction towards the scene for a film point (mm). Returns it and its weight, the area of

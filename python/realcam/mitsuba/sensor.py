@@ -9,7 +9,7 @@ import mitsuba as mi
 import numpy as np
 
 from .._core import Film, InputError, Lens
-from .crossings import WAVELENGTHS_NM, check_expressible, crossings_to_film, crossings_to_scene, wavelength_variable
+from .crossings import VARIABLE, WAVELENGTHS_NM, check_expressible, crossings_to_film, crossings_to_scene
 from .entries import Entries
 from .pupil import Pupil
 from .trace import LensTrace, opaque
@@ -147,7 +147,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
     def set_ray(
         self, ray: Any, time: Any, wavelength_sample: Any, position_sample: Any, aperture_sample: Any, active: Any
     ) -> tuple[Any, Any, Any]:
-        """Fills in the ray. Returns its weight, whether it passes the lens, and its wavelength_variable. A ray that the
+        """Fills in the ray. Returns its weight, whether it passes the lens, and its value of VARIABLE. A ray that the
         lens blocks gets a maximum length of 0."""
         ray.wavelengths, spectral_weight, variable = self.sampled_wavelengths(wavelength_sample, active)
         o, d, weight, passed, _ = self.leave_lens(position_sample, aperture_sample, variable)
@@ -158,22 +158,22 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         return spectral_weight * dr.select(passed & active, weight * self.exposure_time_s, 0.0), passed, variable
 
     def sampled_wavelengths(self, sample: Any, active: Any) -> tuple[Any, Any, Any]:
-        """Samples the wavelengths of a ray. Returns them, the weight of each, and the ray's wavelength_variable. A ray
+        """Samples the wavelengths of a ray. Returns them, the weight of each, and the ray's value of VARIABLE. A ray
         has a single path, so that all of its wavelengths equal the first one sampled."""
         if not self.is_dispersive:
             return type(mi.Ray3f().wavelengths)(), mi.Spectrum(1), None
         sampled, weights = self.sample_wavelengths(dr.zeros(mi.SurfaceInteraction3f), sample, active)
-        return type(sampled)(sampled[0]), mi.Spectrum(weights[0]), wavelength_variable(sampled[0])
+        return type(sampled)(sampled[0]), mi.Spectrum(weights[0]), VARIABLE.at(sampled[0])
 
     def wavelength_of(self, it: Any) -> tuple[Any, Any]:
-        """Returns the weight of each wavelength of light that arrives at the sensor, and its wavelength_variable."""
+        """Returns the weight of each wavelength of light that arrives at the sensor, and its value of VARIABLE."""
         if not self.is_dispersive:
             return mi.Spectrum(1), None
         first = it.wavelengths[0]
         is_known = first > 0
         weight = mi.Spectrum(dr.select(is_known, 0.0, 1.0))
         weight[0] = dr.select(is_known, float(len(it.wavelengths)), 1.0)
-        return weight, wavelength_variable(dr.select(is_known, first, self.lens.wavelength_nm))
+        return weight, VARIABLE.at(dr.select(is_known, first, self.lens.wavelength_nm))
 
     def film_point(self, sample: Any) -> tuple[Any, Any]:
         """Returns the film point in mm, lens frame, of a point of the crop window; the image on the film is upside

@@ -39,7 +39,7 @@ class LensTrace:
         """Returns point (mm, relative to the last vertex) and optical direction after the last surface; the point on
         the first surface, relative to its vertex; whether the ray passes; and whether it would pass without rims.
 
-        o, p: point in mm and optical direction. variable: wavelength_variable of each ray, or None for the design
+        o, p: point in mm and optical direction. variable: value of VARIABLE for each ray, or None for the design
         wavelength.
         """
         is_unblocked = exists = mi.Bool(True)
@@ -57,7 +57,7 @@ class LensTrace:
 
 
 def squared_index_change(crossing: Crossing, variable: Any) -> Any:
-    """n'^2 / n^2 - 1 at a surface. variable: wavelength_variable; None: the design wavelength."""
+    """n'^2 / n^2 - 1 at a surface. variable: value of VARIABLE; None: the design wavelength."""
     if variable is None or not crossing.index_terms:
         return mi.Float(crossing.index_change)
     return horner(crossing.index_terms, variable)

@@ -8,31 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Lens
+from ..dispersion import WavelengthVariable, media_indices
 
-POLE_NM = 200.0
-"""Indices increase towards resonances in the ultraviolet; in 1 / (wavelength - pole) they are nearly polynomials."""
 _TERMS = 4  # powers of the colour variable
 
 
-def colour_variable(lens: Lens, wavelength_nm: NDArray[np.float64]) -> NDArray[np.float64]:
+def colour_variable(lens: Lens) -> WavelengthVariable:
     """Returns the colour variable: 0 at the lens's design wavelength, 1 at 400 nm."""
-    scale, offset = colour_scale(lens)
-    return scale / (np.asarray(wavelength_nm) - POLE_NM) - offset
-
-
-def colour_scale(lens: Lens) -> tuple[float, float]:
-    """Returns (scale, offset), with colour variable = scale / (wavelength - pole) - offset."""
-    design = 1 / (lens.wavelength_nm - POLE_NM)
-    scale = 1 / (1 / (400 - POLE_NM) - design)
-    return scale, scale * design
-
-
-def media_indices(lens: Lens, wavelength_nm: float) -> list[float]:
-    """Refractive indices before the lens and behind each surface."""
-    indices = [1.0]
-    for surface in lens.surfaces:
-        indices.append(surface.material.index(wavelength_nm) if surface.type == "refracting" else indices[-1])
-    return indices
+    return WavelengthVariable.between(lens.wavelength_nm, 0, 400, 1)
 
 
 def squared_indices(lens: Lens, wavelengths_nm: Sequence[float]) -> list[list[float]]:
@@ -46,7 +29,7 @@ def squared_indices(lens: Lens, wavelengths_nm: Sequence[float]) -> list[list[fl
         return np.array(media_indices(lens, wavelength_nm), dtype=np.float64) ** 2
 
     design = squares(lens.wavelength_nm)
-    variables = colour_variable(lens, np.array(wavelengths_nm))
+    variables = colour_variable(lens).at(np.array(wavelengths_nm))
     values = np.array([squares(wavelength_nm) for wavelength_nm in wavelengths_nm]) - design
     powers = variables[:, None] ** np.arange(1, 1 + _TERMS)
     coefficients = np.linalg.lstsq(powers, values, rcond=None)[0].T

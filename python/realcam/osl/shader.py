@@ -8,12 +8,13 @@ import re
 import numpy as np
 
 from .._core import Lens, _film_of_white
+from ..dispersion import POLE_NM
 from .aspheres import aspheres, is_asphere
 from .expressible import check_expressible
 from .figures import array_text, float_text, horner
 from .focus_range import FocusRange, focus_range, gaps_of
 from .functions import HOLE, MIRROR, PLANE, PUPIL, SPHERE, STOP
-from .glasses import POLE_NM, colour_scale, colour_variable, squared_indices
+from .glasses import colour_variable, squared_indices
 from .pupil_table import STOPS, PupilTable, pupil_table
 
 _CELLS = 64
@@ -35,7 +36,7 @@ def shader_text(lens: Lens) -> str:
     squares = squared_indices(lens, list(np.linspace(edges_nm[1], edges_nm[-2], 40)))
     disperses = any(len(square) > 1 for square in squares)
     pupil_nm = (lens.wavelength_nm, *_PUPIL_WAVELENGTHS_NM) if disperses else (lens.wavelength_nm,)
-    table = pupil_table(focusing, dict(zip(pupil_nm, colour_variable(lens, np.array(pupil_nm)), strict=True)))
+    table = pupil_table(focusing, {nm: colour_variable(lens).at(nm) for nm in pupil_nm})
     shapes = aspheres(focusing, table, pupil_nm)
     numbers = {  # values for the templates below
         "reach": float_text(table.reach_mm),
@@ -221,7 +222,7 @@ def _colour(lens: Lens, spectrum: np.ndarray, edges_nm: np.ndarray) -> str:
     spectrum: parts of equal probability for white light, with their RGB. edges_nm: their ends.
     """
     parts = len(spectrum) // _CELLS
-    scale, offset = colour_scale(lens)
+    colour = colour_variable(lens)
     return f"""\
     // A wavelength: the first digits of a random number select {parts} of the equally probable parts of the spectrum,
     // and a hash selects one of them and the position in it.
@@ -234,7 +235,7 @@ def _colour(lens: Lens, spectrum: np.ndarray, edges_nm: np.ndarray) -> str:
         float within = {parts} * noise("hash", chance[0] * 4096, chance[1] * 4096);
         int part = {parts} * cell + min((int)within, {parts - 1});
         float wavelength_nm = mix(edges_nm[part], edges_nm[part + 1], within - floor(within));
-        colour = {float_text(scale)} / (wavelength_nm - {POLE_NM:g}) - {float_text(offset)};
+        colour = {float_text(colour.scale)} / (wavelength_nm - {POLE_NM:g}) - {float_text(colour.offset)};
         film = color(whites[3 * part], whites[3 * part + 1], whites[3 * part + 2]);
         chance[0] = chance[0] * {_CELLS} - cell;
     }}

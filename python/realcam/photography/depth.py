@@ -50,6 +50,11 @@ class DepthOfField:
     approximate_depth_m: float  #: 2 N c (m + 1) / m^2, equation 8 of Liu and Hsu (2013); inf at infinity
 
 
+def usual_circle_mm(film_mm: tuple[float, float]) -> float:
+    """Returns the diameter of the largest blur that counts as sharp unless another is asked for: diagonal / 1500."""
+    return math.hypot(*film_mm) / 1500
+
+
 def blur_diameter_mm(lens: Lens, object_distance_m: float | None = None) -> float:
     """Returns the blur diameter of an axial point in mm: that of the uniform disc with the same second moment, sqrt(8)
     times the RMS radius.
@@ -68,7 +73,7 @@ def depth_of_field(lens: Lens, circle_of_confusion_mm: float | None = None) -> D
     circle_of_confusion_mm: the largest blur that counts as sharp; None: the film's diagonal / 1500. The blur of real
     rays is blur_diameter_mm(). Raises InputError if the lens has no focal length, or if no light passes it.
     """
-    circle = math.hypot(*lens.film_mm) / 1500 if circle_of_confusion_mm is None else circle_of_confusion_mm
+    circle = usual_circle_mm(lens.film_mm) if circle_of_confusion_mm is None else circle_of_confusion_mm
     if not (circle > 0 and math.isfinite(circle)):
         raise InputError("the circle of confusion must be a positive length")
     real, formula = sharp_ranges(lens, circle)

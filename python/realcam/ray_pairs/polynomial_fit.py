@@ -3,7 +3,7 @@
 Each vector of the ray is a x + b p, with the film point x and the point p of a plane behind the lens, both scaled to at
 most 1. a and b are polynomials of the dot products x.x, p.p and x.p, as rotational symmetry demands (Hanika and
 Dachsbacher 2014). z of position and direction, where they are fitted, are polynomials of the dot products themselves.
-Coefficients are polynomials of the wavelength variable (WavelengthScale).
+Coefficients are polynomials of the wavelength variable.
 """
 
 from __future__ import annotations
@@ -13,31 +13,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..dispersion import WavelengthVariable
+
 Array = NDArray[np.float64]
 
-_POLE_NM = 200.0  # a typical resonance of optical glass
 _MOST_WAVELENGTH_TERMS = 4
 
 
-@dataclass(frozen=True)
-class WavelengthScale:
-    """Variable of the wavelength, 1 / (wavelength - 200 nm), scaled to -1 at the longest and 1 at the shortest measured
-    wavelength, in which refractive indices are nearly polynomials. 0 if there is one wavelength."""
+def wavelength_variable(shortest_nm: float, longest_nm: float) -> WavelengthVariable:
+    """Returns the variable that is -1 at the longest and 1 at the shortest measured wavelength; 0 if they are one."""
+    return WavelengthVariable.between(longest_nm, -1, shortest_nm, 1)
 
-    shortest_nm: float
-    longest_nm: float
 
-    def at(self, wavelength_nm: Array | float) -> Array:
-        """Returns the variable."""
-        first, last = (1 / (limit - _POLE_NM) for limit in (self.longest_nm, self.shortest_nm))
-        if first == last:
-            return np.zeros_like(np.asarray(wavelength_nm, float))
-        return (2 / (np.asarray(wavelength_nm, float) - _POLE_NM) - first - last) / (last - first)
-
-    @staticmethod
-    def terms(wavelengths: int) -> int:
-        """Returns the number of powers of the variable for this number of distinct wavelengths."""
-        return min(wavelengths, _MOST_WAVELENGTH_TERMS)
+def wavelength_terms(wavelengths: int) -> int:
+    """Returns the number of powers of the variable for this number of distinct wavelengths."""
+    return min(wavelengths, _MOST_WAVELENGTH_TERMS)
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ FORMAT = "ray-pairs/1"
 _LIMIT_BYTES = 1 << 30
 _MOST_RAYS = 1_000_000
 _LONGEST_MM = 1e6
-LEAST_NM = 250.0  # above the pole of the wavelength variable (polynomial_fit.py)
+LEAST_NM = 250.0  # above the pole of the wavelength variable (dispersion.POLE_NM)
 _COLUMNS = {"wavelength_nm": 0, "film_mm": 2, "film_side_mm": 2, "object_origin_mm": 3, "object_direction": 3, "ok": 0}
 _WIDE_COSINE = 0.05  # of the angle to the axis, below which a ray crosses a plane far from the lens
 

@@ -16,7 +16,7 @@ from .._core import Camera, Film, InputError, RayPairTable
 from ..archive import packed, read_archive, write_archive
 from ..files import check_target
 from .passing_fit import Booleans, fitted_discs, inside, stop_near_axis
-from .polynomial_fit import Array, RayPolynomials, WavelengthScale, evaluated, fitted
+from .polynomial_fit import Array, RayPolynomials, evaluated, fitted, wavelength_terms, wavelength_variable
 from .ray_file import LEAST_NM, RayPairs, read_ray_pairs
 from .reference_surfaces import at_plane, at_sphere, distances, largest_distance, outermost, plane_behind
 
@@ -248,7 +248,7 @@ class RayPairLens:
         return float(wavelength_nm)
 
     def _variable(self, wavelength_nm: float | None) -> float:
-        return float(WavelengthScale(*self.wavelengths_nm).at(self._checked(wavelength_nm)))
+        return float(wavelength_variable(*self.wavelengths_nm).at(self._checked(wavelength_nm)))
 
     def __repr__(self) -> str:
         report = self.fit_report
@@ -288,8 +288,8 @@ def _fitted_lens(pairs: RayPairs, largest_degree: int, random: Array) -> RayPair
     last_radius = outermost(last[ok]) * _FIELD_MARGIN
     x, p = pairs.film_mm / light_radius, last / last_radius
     waves = np.unique(pairs.wavelength_nm)
-    scale = WavelengthScale(float(waves[0]), float(waves[-1]))
-    variable, powers = scale.at(pairs.wavelength_nm), WavelengthScale.terms(len(waves))
+    variable = wavelength_variable(float(waves[0]), float(waves[-1])).at(pairs.wavelength_nm)
+    powers = wavelength_terms(len(waves))
     discs = fitted_discs(x[~held_out], p[~held_out], ok[~held_out])
     origin, direction = pairs.object_origin_mm, pairs.object_direction
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from .. import planning
 from .._core import Camera, Film, InputError, Lens, Plan, RealcamError
 from ..photography import SharpRange, depth_of_field
+from ..photography.depth import usual_circle_mm
 from ..shot import Shot
 from .bench_state import state_of
 from .camera_controls import CameraControls
@@ -45,12 +46,11 @@ class FollowUps:
         self._tracing.submit(lambda: self._listeners.rays(ray_view(lens, heights_mm, plane)))
 
     def measure_depth_of_field(self, lens: Lens, film: Film) -> None:
-        """Measures the depth of field; the circle of confusion is 1/1500 of the film's diagonal."""
-        circle_mm = math.hypot(film.width_mm, film.height_mm) / 1500
+        """Measures the depth of field, with the usual circle of confusion for this film."""
 
         def measure() -> None:
             try:
-                sharp = depth_of_field(lens, circle_mm).real
+                sharp = depth_of_field(lens, usual_circle_mm((film.width_mm, film.height_mm))).real
             except InputError:
                 sharp = SharpRange(math.nan, math.nan)
             self._listeners.sharp_range(sharp)

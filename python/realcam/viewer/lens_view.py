@@ -10,27 +10,39 @@ import numpy as np
 
 from .._core import Film, InputError, Lens
 from ..fields import angle_of_height
+from ..json_values import json_value
 from ..section import CrossSection, cross_section
 from ..section.cut import PLANES, Cut, Points
 
 _RAYS = 9  # rays of each bundle
+_FIRST_ORDER = (
+    "effective_focal_length_mm",
+    "f_number",
+    "back_focal_distance_mm",
+    "front_focal_distance_mm",
+    "entrance_pupil_position_mm",
+    "entrance_pupil_diameter_mm",
+    "exit_pupil_position_mm",
+    "exit_pupil_diameter_mm",
+)
 
 
 def lens_view(lens: Lens, plane: str = "yz") -> dict[str, Any]:
     """Returns the section in a plane, "yz" or "xz", with points (z, height); lengths in mm, lens frame.
 
     is_rotational: true if both planes are equal. is_in_place: true if no surface is tilted or decentred.
+    None stands for infinity, which JSON cannot express.
     """
     section = cross_section(lens, plane=plane, rays=0)
     return {
         "name": lens.name,
         "title": lens.title,
-        "surfaces": [_row(lens, index) for index in range(len(lens.surfaces))],
+        "surfaces": json_value([_row(lens, index) for index in range(len(lens.surfaces))]),
         "film": _points(section.film),
         "plane": plane,
         "is_rotational": lens.is_rotational,
         "is_in_place": Cut(lens).is_in_place,
-        "figures": _figures(lens),
+        "figures": json_value(_figures(lens)),
         **_shapes(section),
     }
 
@@ -79,11 +91,11 @@ def _row(lens: Lens, index: int) -> dict[str, Any]:
     """Row of the table of surfaces; z is the position of the vertex, mm."""
     surface = lens.surfaces[index]
     last = index + 1 == len(lens.surfaces)
-    in_xz = {"radius_x_mm": _finite(surface.radius_of_curvature_x_mm)} if surface.form in ("toroid", "biconic") else {}
+    in_xz = {"radius_x_mm": surface.radius_of_curvature_x_mm} if surface.form in ("toroid", "biconic") else {}
     return {
         "z": lens.vertices_mm[index],
         "type": surface.type,
-        "radius_mm": _finite(surface.radius_of_curvature_mm),
+        "radius_mm": surface.radius_of_curvature_mm,
         **in_xz,
         "thickness_mm": lens.film_distance_mm if last else surface.thickness_mm,
         "glass": surface.material.label,
@@ -119,20 +131,10 @@ def _shapes(section: CrossSection) -> dict[str, Any]:
     }
 
 
-def _figures(lens: Lens) -> dict[str, float | None]:
-    """First-order data; None in place of infinity."""
+def _figures(lens: Lens) -> dict[str, Any]:
+    """First-order data."""
     data = lens.first_order()
-    return {
-        "effective_focal_length_mm": _finite(data.effective_focal_length_mm),
-        "f_number": _finite(data.f_number),
-        "back_focal_distance_mm": _finite(data.back_focal_distance_mm),
-        "front_focal_distance_mm": _finite(data.front_focal_distance_mm),
-        "entrance_pupil_position_mm": _finite(data.entrance_pupil_position_mm),
-        "entrance_pupil_diameter_mm": _finite(data.entrance_pupil_diameter_mm),
-        "exit_pupil_position_mm": _finite(data.exit_pupil_position_mm),
-        "exit_pupil_diameter_mm": _finite(data.exit_pupil_diameter_mm),
-        "film_distance_mm": lens.film_distance_mm,
-    }
+    return {**{name: getattr(data, name) for name in _FIRST_ORDER}, "film_distance_mm": lens.film_distance_mm}
 
 
 def _points(points: Points) -> list[list[float]]:
@@ -140,8 +142,3 @@ def _points(points: Points) -> list[list[float]]:
     # Rounds to a thousandth of a line's width, if the lens fills the window.
     size = float(np.max(np.abs(points), initial=1e-9))
     return np.round(points, max(0, 5 - math.floor(math.log10(size)))).tolist()  # type: ignore[no-any-return]
-
-
-def _finite(value: float) -> float | None:
-    """Replaces infinity, which JSON cannot express, by None."""
-    return value if math.isfinite(value) else None

@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from .._core import Camera, InputError
 from ..calibration import Calibration
 from ..calibration.arrays import Array
 from ..calibration.rig import transforms_from
 from ..calibration.transforms import inverse_of
-
-RIG_FROM_VISION = np.diag([1.0, -1.0, -1.0, 1.0])  # computer vision's axes have y down and z forward
+from .conventions import FLIPPED
 
 
 def poses_in_rig(calibrations: Mapping[str, Calibration]) -> dict[str, Array]:
@@ -25,8 +22,7 @@ def poses_in_rig(calibrations: Mapping[str, Calibration]) -> dict[str, Array]:
     transforms = transforms_from("camera0", list(calibrations.values()))
     back = inverse_of(transforms[0])
     return {
-        name: RIG_FROM_VISION @ inverse_of(transform @ back)
-        for name, transform in zip(calibrations, transforms, strict=True)
+        name: FLIPPED @ inverse_of(transform @ back) for name, transform in zip(calibrations, transforms, strict=True)
     }
 
 

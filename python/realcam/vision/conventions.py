@@ -10,9 +10,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..calibration.transforms import inverse_of, turned
+
 Array = NDArray[np.float64]
 
 OPENCV_PIXEL_SHIFT = -0.5
+FLIPPED = np.diag([1.0, -1.0, -1.0, 1.0])  # between axes with y down and z forward, and y up and z backward
 
 
 def opencv_matrix(camera_matrix: Array) -> Array:
@@ -27,9 +30,7 @@ def opengl_pose(rotation: Array, translation: Array) -> Array:
 
     rotation, translation: (R, t) of Camera.world_to_camera, in metres.
     """
-    pose = np.eye(4)
-    pose[:3, :3] = rotation.T @ np.diag([1.0, -1.0, -1.0])
-    pose[:3, 3] = -rotation.T @ translation
+    pose: Array = inverse_of(turned(rotation, translation)) @ FLIPPED
     return pose
 
 

@@ -47,22 +47,20 @@ def calibration(
     *,
     film_mm: tuple[float, float] | None = None,
     resolution: tuple[int, int] | None = None,
-    focus_m: float | None = None,
-    f_number: float | None = None,
     model: str | None = None,
     distance_m: float | None = None,
     through: str = "light",
 ) -> LensCalibration:
-    """Returns the calibration that a camera with this lens would have: a camera model fitted to the lens's rays.
+    """Returns the calibration that a camera with this lens would have: a camera model fitted to the lens's rays, at its
+    focus and f-number.
 
-    film_mm: (width, height), and resolution: (columns, rows); None: see Film.for_lens. focus_m: distance of the plane
-    in focus from the film, and f_number: as for Lens.with_rings; None: as the lens is set. model: see
-    rc.fit_camera_model; None: "opencv5" if it fits to 0.05 pixels RMS, and otherwise the better one of it and
-    "fisheye". distance_m, through: see fit_camera_model.
+    film_mm: (width, height), and resolution: (columns, rows); None: see Film.for_lens. model: see rc.fit_camera_model;
+    None: "opencv5" if it fits to 0.05 pixels RMS, and otherwise the better one of it and "fisheye". distance_m,
+    through: see fit_camera_model.
     The result can be saved in all formats of docs/calibration.md. Its rms_px and max_px say how well the model fits.
     Raises InputError.
     """
-    camera = Camera(self.with_rings(focus_m=focus_m, f_number=f_number), film=Film.for_lens(self, film_mm, resolution))
+    camera = Camera(self, film=Film.for_lens(self, film_mm, resolution))
     fit = _best(camera, distance_m, through) if model is None else _fit(camera, model, distance_m, through)
     found = fit.calibration
     return LensCalibration(**{entry.name: getattr(found, entry.name) for entry in fields(found)}, fit=fit)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._core import Camera, InputError, RenderSettings, Scene, Sensor
 from ..calibration import Calibration
+from ..calibration.transforms import quaternion, turned
 from ..files import write_whole
 from ..image import Image
 from ..pickling import PickledByFields
@@ -292,17 +293,14 @@ class Rig(PickledByFields):
 
         The first camera is the reference of the other poses. Raises InputError, ImageFileError.
         """
-        from scipy.spatial.transform import Rotation  # slow to load
-
         first = next(iter(self.members))
         cameras: list[dict[str, Any]] = [{"image_prefix": f"{first}/", "ref_sensor": True}]
         for name in list(self.members)[1:]:
             rotation, translation = self.relative_pose(name, first)
-            x, y, z, w = Rotation.from_matrix(rotation).as_quat().tolist()
             cameras.append(
                 {
                     "image_prefix": f"{name}/",
-                    "cam_from_rig_rotation": [w, x, y, z],
+                    "cam_from_rig_rotation": quaternion(turned(rotation, translation)),
                     "cam_from_rig_translation": translation.tolist(),
                 }
             )

@@ -235,7 +235,7 @@ def test_opencv_reads_the_files(tmp_path: Path) -> None:
 
 
 def test_a_lens_becomes_a_calibration(tmp_path: Path) -> None:
-    found = rc.Lens.load("tessar-50mm").calibration(resolution=(300, 200), focus_m=2.0, f_number=5.6)
+    found = rc.Lens.load("tessar-50mm").with_rings(focus_m=2.0, f_number=5.6).calibration(resolution=(300, 200))
     assert found.size == (300, 200)
     assert found.film_mm == (36, 24)
     assert 0 < found.rms_px <= found.max_px < 0.05
