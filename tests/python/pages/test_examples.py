@@ -135,8 +135,8 @@ def test_torch_focus_finds_both_rings() -> None:
 def test_camera_from_picture_finds_the_camera() -> None:
     command = [sys.executable, str(EXAMPLES / "camera_from_picture.py"), "--starts", "1"]
     printed = subprocess.run(command, check=True, capture_output=True, text=True, timeout=600).stdout
-    # For errors as small as the bound, 8 times the square is a chi-square of 8 degrees of freedom, which exceeds 32 once
-    # in 10,000 times.
+    # For errors as small as the bound, 8 times the square is a chi-square of 8 degrees of freedom, which exceeds 32
+    # once in 10,000 times.
     assert float(re.search(r"error / bound ([\d.]+)", printed)[1]) < 2
 
 
