@@ -119,7 +119,7 @@ class CameraParameters:
                     return dict(zip(names, matrix[:, names.index(parameter)].tolist(), strict=True))
             # The rings' scales are those of the lens of `camera`, whose surfaces are not changed.
             if parameter == "focus_distance_m":
-                return {**focus_rates(self._turned(at))}
+                return dict(focus_rates(self._turned(at)).items())
             if parameter == "f_number":
                 return {"f_number": stop_rate(self._turned(at)) / stop_rate(self.camera_at(values).lens)}
             return {parameter: 1.0}

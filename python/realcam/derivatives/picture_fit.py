@@ -21,8 +21,9 @@ class PictureFit:
     """Result of a fit to pictures.
 
     values: (P,). covariance: (P, P), of the values, from the noise of the pictures and the prior: the inverse of the
-    information matrix. Without a prior it is the Cramer-Rao bound. chi_square: mean square of the residuals of the
-    finest level, in units of their noise. evaluations: number of rendered sets of pictures.
+    information matrix. Without a prior it is the Cramer-Rao bound. It does not contain the noise of renderings.
+    chi_square: mean square of the residuals of the finest level, in units of their noise. evaluations: number of
+    rendered sets of pictures.
     """
 
     values: Doubles
@@ -67,8 +68,8 @@ def fit_pictures(
     Both may take fewer samples for larger blocks.
     observed, variance: pictures and the variance of their pixels' noise, (K, H, W, C). start: (P,). scale: (P,),
     changes of the values that matter equally. prior: mean and standard deviation of the values, (P,), inf where there
-    is none. bounds: of the values. blocks: sizes of the blocks of pixels whose means are compared, from coarse to fine;
-    they must divide H and W. Coarse pictures tolerate a start that is further away. steps: most steps with a block size.
+    is none. bounds: of the values. blocks: sizes of the blocks of pixels whose means are compared, from coarse to fine,
+    which must divide H and W; coarse pictures tolerate a start that is further away. steps: most steps with each.
 
     The information matrix is the product of two independent estimates of the derivatives, because the noise of one,
     squared, would be taken for information (which is why scipy's least_squares is not used).
@@ -126,7 +127,7 @@ def fit_pictures(
             if not is_better:
                 break
     covariance = np.linalg.pinv(information) * np.outer(units, units)
-    return PictureFit(values, covariance, float((now[: wanted.size] ** 2).mean()), evaluations)
+    return PictureFit(values, covariance, float((now[: -len(values)] ** 2).mean()), evaluations)
 
 
 def _block_means(pictures: Doubles, block: int) -> Doubles:

@@ -185,3 +185,23 @@ def test_torch_focus_finds_both_rings() -> None:
     focus, f_number = re.search(r"focus ([\d.]+) m, f/([\d.]+)\n$", printed).groups()
     # The start is 0.6 m and 0.8 away.
     assert abs(float(focus) - 2.6) < 0.06 and abs(float(f_number) - 3.2) < 0.04
+
+
+@pytest.mark.slow
+def test_camera_from_picture_finds_the_camera() -> None:
+    command = [sys.executable, str(EXAMPLES / "camera_from_picture.py"), "--starts", "1"]
+    printed = subprocess.run(command, check=True, capture_output=True, text=True, timeout=600).stdout
+    # For errors as small as the bound, 8 times the square is a chi-square of 8 degrees of freedom, which exceeds 32
+    # once in 10,000 times.
+    assert float(re.search(r"error / bound ([\d.]+)", printed)[1]) < 2
+
+
+@pytest.mark.slow
+def test_which_copy_predicts_other_pictures() -> None:
+    command = [sys.executable, str(EXAMPLES / "which_copy.py"), "--copies", "1"]
+    printed = subprocess.run(command, check=True, capture_output=True, text=True, timeout=900).stdout
+    nominal, fitted = (float(found) for found in re.findall(r"held out, .*: ([\d.]+) of the noise", printed))
+    assert fitted < 0.2 * nominal
+    # Standard deviations within the prior, whose axes they are measured by.
+    sizes = [float(found) for found in re.search(r"before: \[(.*)\]", printed)[1].split(",")]
+    assert len(sizes) == 28 and max(sizes) < 1.1 and min(sizes) < 0.2

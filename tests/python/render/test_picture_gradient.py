@@ -167,8 +167,8 @@ def test_even_light_has_no_derivative_by_pose() -> None:
 
 
 def test_even_light_has_none_at_a_fisheyes_border() -> None:
-    """Interior and boundary cancel. Rays that leave the steep first surface by its rim, 110 degrees from the axis, cross
-    the rim's plane on the other side of the rim."""
+    """Interior and boundary cancel. Rays that leave the steep first surface by its rim, 110 degrees from the axis,
+    cross the rim's plane on the other side of the rim."""
     lens = rc.Lens.load("fisheye-6mm-220deg").focused(1).stopped_down(8)
     camera = rc.Camera(lens, film=rc.Film(0.8, 0.8, (8, 8), shift_mm=(11.1, 0.7)), exposure_time_s=1.0)
     parameters = ["right_m", "backward_m"]

@@ -1,0 +1,127 @@
+"""rc.fit_pictures beside the closed forms of linear least squares, and on a camera."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import realcam as rc
+from numpy.typing import NDArray
+
+from .test_picture_gradient import corner_camera, stripes
+
+SHAPE = (2, 4, 8, 1)
+Doubles = NDArray[np.float64]
+
+
+def linear_problem() -> tuple[Doubles, Doubles, Doubles]:
+    """Derivatives (3, *SHAPE), observed pictures and the variance of their noise."""
+    random = np.random.default_rng(1)
+    matrix = random.normal(size=(3, *SHAPE))
+    variance = random.uniform(0.5, 2, SHAPE)
+    observed = np.tensordot([1.0, -2.0, 0.5], matrix, 1) + np.sqrt(variance) * random.normal(size=SHAPE)
+    return matrix, observed, variance
+
+
+@pytest.mark.parametrize("has_prior", [False, True])
+def test_a_linear_problem_has_the_solution_of_linear_least_squares(has_prior: bool) -> None:
+    matrix, observed, variance = linear_problem()
+    mean, deviation = np.array([0.5, 0.0, 0.0]), np.array([0.1, np.inf, 0.2])
+    fit = rc.fit_pictures(
+        lambda values, block: np.tensordot(values, matrix, 1),
+        lambda values, block, seed: matrix,
+        observed,
+        variance,
+        np.zeros(3),
+        np.ones(3),
+        prior=(mean, deviation) if has_prior else None,
+        blocks=(2, 1),
+        steps=30,
+    )
+    rows = (matrix / np.sqrt(variance)).reshape(3, -1)
+    weights = 1 / deviation**2 if has_prior else np.zeros(3)
+    information = rows @ rows.T + np.diag(weights)
+    wanted = np.linalg.solve(information, rows @ (observed / np.sqrt(variance)).ravel() + weights * mean)
+    np.testing.assert_allclose(fit.covariance, np.linalg.inv(information), rtol=1e-9)
+    # The search ends when a step is a tenth of the standard deviation, and damping shortens steps by a tenth at most.
+    off = fit.values - wanted
+    assert off @ information @ off < 0.1**2
+
+
+def test_noise_of_derivatives_does_not_count_as_information() -> None:
+    matrix, observed, variance = linear_problem()
+    random = np.random.default_rng(2)
+    fits = [
+        rc.fit_pictures(
+            lambda values, block: np.tensordot(values, matrix, 1),
+            lambda values, block, seed: matrix + random.normal(size=matrix.shape),
+            observed,
+            variance,
+            np.zeros(3),
+            np.ones(3),
+            blocks=(1,),
+            steps=1,
+        )
+        for _ in range(200)
+    ]
+    found = np.array([np.linalg.inv(fit.covariance) for fit in fits])
+    rows = (matrix / np.sqrt(variance)).reshape(3, -1)
+    error = found.std(0, ddof=1) / np.sqrt(len(found))
+    # Squares of one estimate would be too large by the sum of 1 / variance on the diagonal: some 60, and 20 errors.
+    assert np.all(np.abs(found.mean(0) - rows @ rows.T) < 4.5 * error)
+    assert (1 / variance).sum() > 20 * error.max()
+
+
+def test_directions_are_sorted_by_what_pictures_leave_open() -> None:
+    fit = rc.PictureFit(np.zeros(2), np.array([[4.0, 0.0], [0.0, 9.0]]), 1.0, 1)
+    sizes, axes = fit.directions([4.0, 3.0])
+    np.testing.assert_allclose(sizes, [1.0, 0.5])
+    np.testing.assert_allclose(np.abs(axes), [[0, 1], [1, 0]])
+    np.testing.assert_allclose(fit.errors, [2, 3])
+
+
+@pytest.mark.slow
+def test_focus_and_yaw_are_found() -> None:
+    scene, camera = stripes(), corner_camera()
+    family = rc.CameraParameters(camera, ["yaw_deg", "focus_distance_m"])
+    truth = np.array([0.05, 2.15])
+    random = np.random.default_rng(4)
+    exact = family.render(scene, truth, spp=2048, seed=9, max_bounces=0)[None].astype(float)
+    sigma = 0.02 * exact.mean()
+    fit = rc.fit_pictures(
+        lambda values, block: family.render(scene, values, spp=256, seed=1, max_bounces=0)[None],
+        lambda values, block, seed: family.gradient(scene, values, spp=64, seed=100 + seed, max_bounces=0)[:, None],
+        exact + sigma * random.normal(size=exact.shape),
+        np.full(exact.shape, sigma**2),
+        family.values,
+        [0.1, 0.2],
+        blocks=(4, 2, 1),
+    )
+    off = fit.values - truth
+    # A chi-square of two degrees of freedom exceeds 20 once in 20,000 times; the noise of the renderings, a third of
+    # that of the pictures, is in the margin.
+    assert off @ np.linalg.solve(fit.covariance, off) < 20
+    assert np.all(fit.errors < [0.01, 0.05])
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"blocks": (3,)}, "blocks must divide pictures of 8 x 4 pixels"),
+        ({"variance": np.zeros(SHAPE)}, "variances positive"),
+        ({"scale": [1.0, 0.0, 1.0]}, "scales positive"),
+    ],
+)
+def test_wrong_arguments_are_refused(changes: dict[str, object], message: str) -> None:
+    matrix, observed, variance = linear_problem()
+    arguments: dict[str, object] = {
+        "observed": observed,
+        "variance": variance,
+        "start": np.zeros(3),
+        "scale": np.ones(3),
+    }
+    with pytest.raises(rc.InputError, match=message):
+        rc.fit_pictures(
+            lambda values, block: np.tensordot(values, matrix, 1),
+            lambda values, block, seed: matrix,
+            **{**arguments, **changes},
+        )
