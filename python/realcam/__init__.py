@@ -99,7 +99,7 @@ if TYPE_CHECKING:
         backpropagate_rays,
         ray_derivatives,
     )
-    from .derivatives.picture import render_filtered, render_gradient
+    from .derivatives.picture import render_gradient
     from .job import Job, JobStatus
     from .optimisation import (
         GlassMatch,
@@ -135,7 +135,7 @@ _TOOLS = {
     "analysis.image_simulation": "ImageSimulation image_simulation",  # loads scipy
     "calibration": "Calibration CalibrationFileError GeometryError PointStatus Vignetting",
     "derivatives": "Gradient RayDerivatives RayGradient Variable backpropagate_rays ray_derivatives",
-    "derivatives.picture": "render_filtered render_gradient",
+    "derivatives.picture": "render_gradient",
     "job": "Job JobStatus",
     "optimisation": "GlassMatch GlassSearch Operand Optimisation Targets nearest_glasses optimised with_better_glasses",
     "photography": "DepthOfField PhotographicFigures depth_of_field photographic_figures",
@@ -303,7 +303,6 @@ __all__ = [
     "ray_derivatives",
     "read_environment",
     "render",
-    "render_filtered",
     "render_gradient",
     "save_camera_json",
     "save_colmap",
