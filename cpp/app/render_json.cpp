@@ -72,6 +72,7 @@ void write_exposure(JsonWriter& json, const shot::Shot& shot, const Image& image
 void write_settings(JsonWriter& json, const shot::ShotRequest& request, const View& view, const std::string& plan) {
     const RenderSettings& settings = request.settings;
     json.key("seed").number(settings.seed).key("max_bounces").number(settings.path().max_bounces);
+    json.key("filter").text(name_among(kPixelFilters, settings.filter));
     json.key("transport").text(name_of(settings.transport)).key("clamp_cd_m2").number(settings.clamp);
     for (const auto& [name, value] : view.entries())
         json.key(name.substr(name.find(':') + 1)).text(io::printable(value));

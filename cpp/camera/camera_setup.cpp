@@ -11,6 +11,7 @@
 #include "../math/motion.hpp"
 #include "../optics/lens/exposure.hpp"
 #include "effects/direct_lens_path.hpp"
+#include "film/pixel_filter.hpp"
 #include "models/exposed_rays.hpp"
 #include "models/pinhole_camera.hpp"
 
@@ -147,6 +148,7 @@ CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
     view.model = camera_.model;
     view.width = camera_.film.width;
     view.height = camera_.film.height;
+    view.filter = effects_.pixel_filter;
     view.film_half_width = static_cast<float>(0.5 * camera_.film.width_mm);
     view.film_half_height = static_cast<float>(0.5 * camera_.film.height_mm);
     view.film_centre = {static_cast<float>(-camera_.film.shift_mm.x), static_cast<float>(-camera_.film.shift_mm.y)};
@@ -180,7 +182,7 @@ const Camera& CameraSetup::validated(const Camera& camera) {
 void CameraSetup::set_pupil(const PupilTracer& tracer, const CameraSetup* last, PupilStart start) {
     const std::vector<double>& wavelengths = tables_.pupil_wavelengths();
     const bool is_comparable = last && last->has_pupil_for(wavelengths, effects_.pupil_sampling);
-    const bool is_unchanged = is_comparable && last->has_lens_and_film_of(camera_);
+    const bool is_unchanged = is_comparable && last->has_lens_and_film_of(*this);
     if (is_unchanged && last->has_new_pupil()) {
         pupil_ = last->pupil_;
         pupil_grid_ = last->pupil_grid_;
@@ -208,8 +210,16 @@ void CameraSetup::check_light() const {
                          " um, is too small for pictures through every surface; open it, or use another camera model");
 }
 
+Film CameraSetup::sampled_film() const {
+    Film film = camera_.film;
+    const double margins = 2 * static_cast<double>(filter_radius(effects_.pixel_filter)) - 1;
+    film.width_mm *= 1 + margins / film.width;
+    film.height_mm *= 1 + margins / film.height;
+    return film;
+}
+
 FilmArea CameraSetup::film_area() const {
-    const Film& film = camera_.film;
+    const Film film = sampled_film();
     // The image on the film is inverted: the film's axes are opposite to the picture's.
     const Vec2<double> middle = {-film.shift_mm.x, -film.shift_mm.y};
     return {{middle.x - 0.5 * film.width_mm, middle.y - 0.5 * film.height_mm},
@@ -231,7 +241,7 @@ double CameraSetup::widest_angle() const {
 
 void CameraSetup::set_map(const PupilTracer& tracer, const CameraSetup* last) {
     const LensSystem& lens = camera_.lens;
-    if (last && last->map_ && last->has_lens_and_film_of(camera_)) {
+    if (last && last->map_ && last->has_lens_and_film_of(*this)) {
         map_ = last->map_;
         return;
     }
@@ -243,7 +253,7 @@ void CameraSetup::set_map(const PupilTracer& tracer, const CameraSetup* last) {
 void CameraSetup::set_bundle_motions(const CameraSetup* last) {
     if (!camera_.geometry) return;
     const bool is_unchanged = last && last->bundle_motions_ && last->camera_.geometry == camera_.geometry &&
-                              last->camera_.model == camera_.model && last->has_lens_and_film_of(camera_);
+                              last->camera_.model == camera_.model && last->has_lens_and_film_of(*this);
     bundle_motions_ = is_unchanged ? last->bundle_motions_
                                    : std::make_shared<const BundleMotions>(camera_, view(camera_.pose.position_m));
 }
@@ -262,10 +272,10 @@ void CameraSetup::set_times(CameraView& view, bool scene_moves) const {
     view.exposed_time = static_cast<float>(camera_.seen_time() / all);
 }
 
-bool CameraSetup::has_lens_and_film_of(const Camera& camera) const {
-    return camera_.lens == camera.lens && camera_.ray_pairs == camera.ray_pairs &&
-           camera_.film.width_mm == camera.film.width_mm && camera_.film.height_mm == camera.film.height_mm &&
-           camera_.film.shift_mm == camera.film.shift_mm;
+bool CameraSetup::has_lens_and_film_of(const CameraSetup& other) const {
+    const Film film = sampled_film(), others = other.sampled_film();
+    return camera_.lens == other.camera_.lens && camera_.ray_pairs == other.camera_.ray_pairs &&
+           film.width_mm == others.width_mm && film.height_mm == others.height_mm && film.shift_mm == others.shift_mm;
 }
 
 bool CameraSetup::has_pupil_for(const std::vector<double>& wavelengths, PupilSampling sampling) const {

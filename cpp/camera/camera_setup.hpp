@@ -44,7 +44,7 @@ public:
     const PupilGrid* pupil_grid() const { return pupil_grid_.get(); }
     /// True if the pupil does not depend on the earlier set-up that the search started from (PupilStart).
     bool has_new_pupil() const { return !pupil_ || !pupil_->was_found_near_similar(); }
-    /// Rectangle of the film in the lens's axes, mm.
+    /// Rectangle of the sampled film (sampled_film) in the lens's axes, mm.
     FilmArea film_area() const;
     /// True if lights can be traced through every surface of the lens.
     bool traces_lights() const {
@@ -60,8 +60,10 @@ private:
     /// Validates the camera before any member is built: a camera without a lens has no first surface.
     static const Camera& validated(const Camera& camera);
 
-    /// Largest distance of a film point from the axis, mm.
-    double film_radius() const { return camera_.film.radius_mm(); }
+    /// Film that is as much larger than the camera's as the pixels' filter reaches beyond its border.
+    Film sampled_film() const;
+    /// Largest distance of a sampled film point from the axis, mm.
+    double film_radius() const { return sampled_film().radius_mm(); }
 
     /// Finds the pupil, or reuses that of `last`.
     void set_pupil(const PupilTracer& tracer, const CameraSetup* last, PupilStart start);
@@ -80,7 +82,7 @@ private:
     /// Sets the view's keyframes and row times; leaves the times 0 if nothing moves.
     void set_times(CameraView& view, bool scene_moves) const;
 
-    bool has_lens_and_film_of(const Camera& camera) const;
+    bool has_lens_and_film_of(const CameraSetup& other) const;
     /// True if the set-up has a pupil that was found for these wavelengths and this sampling.
     bool has_pupil_for(const std::vector<double>& wavelengths, PupilSampling sampling) const;
 

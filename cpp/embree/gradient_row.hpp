@@ -9,7 +9,7 @@
 
 #include "../render/gradients/film_radiance.hpp"
 #include "embree_scene.hpp"
-#include "packet_scene.hpp"
+#include "kernels.hpp"
 #include "picture_gradient.hpp"
 
 // Samples of PictureGradient: those of one row of its film, in blocks, and the rays of which tangents are traced.
@@ -31,16 +31,23 @@ struct PictureGradient::RayBlock {
     float variable[kRays];
     int count = 0;
 
-    /// Adds a ray at the film. Lanes that are not filled hold copies of the last ray, whose tangents are 0.
+    /// Adds a ray at the film.
     void add(const SampleLight& light, Vec3d origin, Vec3d direction) {
-        for (int i = count; i < kRays; ++i) {
-            rays.origin.set(i, origin);
-            rays.direction.set(i, direction);
-            rays.direction_tangent.set(i, {0, 0, 0});
-            rays.status[i] = 0;
-            variable[i] = light.variable;
-        }
+        rays.origin.set(count, origin);
+        rays.direction.set(count, direction);
+        rays.direction_tangent.set(count, {0, 0, 0});
+        variable[count] = light.variable;
         lights[count++] = light;
+    }
+    /// Fills the other lanes with copies of the last ray, whose tangents are 0.
+    void complete() {
+        for (int i = 0; i < kRays; ++i) rays.status[i] = 0;
+        for (int i = count; i < kRays; ++i) {
+            rays.origin.set(i, rays.origin[count - 1]);
+            rays.direction.set(i, rays.direction[count - 1]);
+            rays.direction_tangent.set(i, {0, 0, 0});
+            variable[i] = variable[count - 1];
+        }
     }
     /// Sets the tangent of a ray by the light's direction cosines at the film, which are opposite to the ray's.
     void set_tangent(int lane, Vec2d w) {
@@ -79,8 +86,7 @@ public:
           samples_(samples),
           row_(row),
           scene_view_(of.embree_->scene.placed().view()),
-          scene_{of.embree_->scene.handle(), static_cast<std::uint32_t>(scene_view_.instance_count), RayOrder::coherent,
-                 0} {}
+          path_settings_(of.settings_.path()) {}
 
     /// Calls f(lane, light of its sample, samples) for blocks of samples on the film, for the lanes whose rays pass.
     template <class F>
@@ -89,10 +95,13 @@ public:
         FilmSamples<kLanes> film;
         PathResults<kLanes> results;
         for_blocks(samples_.spp, samples_.seed, block, [&](int) {
-            if (needs_general_lens_code(of_.view_))
-                sample_film<LensKind::any>(of_.view_, block, film);
-            else
-                sample_film<LensKind::rotational>(of_.view_, block, film);
+            for (int i = 0; i < kLanes; ++i) {
+                film.mirrored[i] = samples_.pairs ? static_cast<std::int32_t>(block.sample[i] & 1u) : 0;
+                if (samples_.pairs) block.sample[i] >>= 1;
+            }
+            realcam_gradient_block request = request_for(block);
+            request.film = &film;
+            kernels().sample_film(&request);
             trace(block, film.rays, film.time, results);
             for (int i = 0; i < kLanes; ++i)
                 if (film.rays.passed[i])
@@ -175,8 +184,13 @@ private:
             for (int i = 0; i < kLanes; ++i) results.irradiance.set(i, grey(rays.passed[i] ? rays.weight[i] : 0.0f));
             return;
         }
-        scene_.order = RayOrder::coherent;
-        trace_radiance(scene_view_, of_.view_, of_.settings_.path(), block, rays, time, scene_, results);
+        realcam_gradient_block request = request_for(block);
+        request.rays = &rays, request.time = &time, request.results = &results;
+        kernels().trace_radiance(&request);
+    }
+    realcam_gradient_block request_for(const SampleBlock<kLanes>& block) const {
+        return {&scene_view_, &of_.view_, of_.embree_->scene.handle(), &path_settings_, &block, nullptr, nullptr,
+                nullptr,      nullptr};
     }
 
     /// Sends lines from the centres of the pupil's boxes in random directions.
@@ -273,7 +287,7 @@ private:
     const GradientSamples& samples_;
     int row_;
     SceneView scene_view_;
-    PacketScene<SceneKind::any> scene_;
+    PathSettings path_settings_;
 };
 
 }  // namespace realcam

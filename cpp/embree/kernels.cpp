@@ -13,6 +13,7 @@
 #include "../render/film/pixel_sum.hpp"
 #include "../render/ghosts/gather_ghosts.hpp"
 #include "../render/ghosts/ghost_film.hpp"
+#include "../render/gradients/film_radiance.hpp"
 #include "../render/layers/trace_layers.hpp"
 #include "../render/lights/trace_lights.hpp"
 #include "../render/path/path_settings.hpp"
@@ -315,6 +316,38 @@ void take_splats(realcam_ghosts* job) {
                                                                                       : take_splats_with<false>(job);
 }
 
+void sample_film_of(const realcam_gradient_block* of) {
+    const CameraView camera = *static_cast<const CameraView*>(of->camera_view);
+    const auto& block = *static_cast<const SampleBlock<kLanes>*>(of->block);
+    auto& film = *static_cast<FilmSamples<kLanes>*>(of->film);
+    if (needs_general_lens_code(camera))
+        sample_film<LensKind::any>(camera, block, film);
+    else
+        sample_film<LensKind::rotational>(camera, block, film);
+}
+
+template <SceneKind scene_kind>
+void trace_radiance_with(const realcam_gradient_block* of) {
+    const SceneView view = *static_cast<const SceneView*>(of->scene_view);
+    const CameraView camera = *static_cast<const CameraView*>(of->camera_view);
+    const PathSettings settings = *static_cast<const PathSettings*>(of->path_settings);
+    PacketScene<scene_kind> scene{static_cast<RTCScene>(of->embree_scene),
+                                  static_cast<std::uint32_t>(view.instance_count), RayOrder::coherent, 0};
+    trace_radiance<scene_kind>(view, camera, settings, *static_cast<const SampleBlock<kLanes>*>(of->block),
+                               *static_cast<const CameraRays<kLanes>*>(of->rays),
+                               *static_cast<const Lanes<float, kLanes>*>(of->time), scene,
+                               *static_cast<PathResults<kLanes>*>(of->results));
+}
+
+void trace_radiance_of(const realcam_gradient_block* of) {
+    const auto& camera = *static_cast<const CameraView*>(of->camera_view);
+    switch (kernel_scene_kind(*static_cast<const SceneView*>(of->scene_view), camera)) {
+        case SceneKind::plain: return trace_radiance_with<SceneKind::plain>(of);
+        case SceneKind::opaque: return trace_radiance_with<SceneKind::opaque>(of);
+        case SceneKind::any: return trace_radiance_with<SceneKind::any>(of);
+    }
+}
+
 // The functions of realcam_kernels for rays and sensors: they process a whole request in blocks.
 
 void generate_all(const void* request) {
@@ -378,4 +411,6 @@ extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {
                                                                                 realcam::expose_sensor,
                                                                                 realcam::film_points<float>,
                                                                                 realcam::film_points<double>,
-                                                                                realcam::aim_all};
+                                                                                realcam::aim_all,
+                                                                                realcam::sample_film_of,
+                                                                                realcam::trace_radiance_of};

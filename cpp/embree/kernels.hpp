@@ -43,6 +43,19 @@ struct realcam_ghosts {
     std::uint64_t blocks_done[2], rays;  // results: blocks per film, and rays traced in the scene; incremented
 };
 
+// Block of 256 samples of PictureGradient.
+struct realcam_gradient_block {
+    const void* scene_view;  // SceneView
+    const void* camera_view;  // CameraView
+    void* embree_scene;  // RTCScene
+    const void* path_settings;  // PathSettings
+    const void* block;  // SampleBlock<256>
+    void* film;  // result of sample_film: FilmSamples<256>
+    const void* rays;  // CameraRays<256>
+    const void* time;  // Lanes<float, 256>: fractions of the exposure
+    void* results;  // result of trace_radiance: PathResults<256>
+};
+
 // Kernels for one instruction set.
 struct realcam_kernels {
     const char* instruction_set;  // v2, v3, v4 or native (x86-64 levels)
@@ -58,6 +71,8 @@ struct realcam_kernels {
     void (*film_points_f32)(void* request);  // FilmPointsRequest<float>
     void (*film_points_f64)(void* request);  // FilmPointsRequest<double>
     void (*aim_rays)(const void* request);  // AimRequest
+    void (*sample_film)(const realcam_gradient_block*);
+    void (*trace_radiance)(const realcam_gradient_block*);
 };
 }
 

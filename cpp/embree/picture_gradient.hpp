@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "../camera/camera_setup.hpp"
-#include "../camera/film/pixel_filter.hpp"
 #include "../checkpoint.hpp"
 #include "../optics/derivatives/outline_rays.hpp"
 #include "../render/settings/render_settings.hpp"
@@ -19,6 +18,9 @@ struct GradientSamples {
     std::uint32_t seed = 0;
     int spp = 64;  ///< samples per pixel on the film; those of a picture with the same seed
     int outline_spp = 16;  ///< samples per pixel on the outline of the pupil
+    /// Samples on the film come in pairs, whose film points are mirrored in the pixel's centre and whose other random
+    /// numbers are equal: the gradient of the filter, where the light is even, cancels in them.
+    bool pairs = true;
     bool interior = true, boundary = true;  ///< terms of the derivative; false only for tests
     /// True: the scene is replaced by uniform light of radiance 1 in all channels, and no ray is traced in it.
     bool uniform = false;
@@ -35,7 +37,7 @@ struct GradientSamples {
 class PictureGradient {
 public:
     /// Throws InputError if scene or camera are invalid, or if derivatives do not support one of their features.
-    PictureGradient(const Assembly& scene, const Camera& camera, const RenderSettings& settings, PixelFilter filter,
+    PictureGradient(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                     std::vector<LensVariable> variables);
     ~PictureGradient();
     PictureGradient(const PictureGradient&) = delete;
@@ -43,6 +45,8 @@ public:
 
     int width() const { return camera_.film.width; }
     int height() const { return camera_.film.height; }
+    /// True if the scene moves during the exposure.
+    bool scene_moves() const { return view_.exposed_time > 0; }
     /// Number of numbers of the camera.
     std::size_t number_count() const { return path_.variable_count() + kOtherNumbers; }
 
@@ -51,8 +55,8 @@ public:
 
     /// Returns the derivatives of a function of the picture by all numbers. `adjoint`: derivatives of the function by
     /// the pixels, height x width x 3. `control`: control variate of the radiance of each pixel's light, of the same
-    /// shape, or null; the derivatives are then those of the picture less the control variate times that of uniform
-    /// light.
+    /// shape, or null. The derivatives by the pose are those of the picture less the control variate times that of
+    /// uniform light, which does not depend on the pose.
     std::vector<double> reverse(const float* adjoint, const float* control, const GradientSamples& samples,
                                 const KeepGoing& keep_going);
 
@@ -75,10 +79,15 @@ private:
     struct RayBlock;
     struct OutlineBlock;
     struct EmbreeParts;
+    struct ReverseSums;
+    struct Direction;
+    struct Motions;
 
     /// Camera whose film extends past the picture's border by the pixels of the margin, from which light counts for
     /// pixels at the border.
     static Camera extended(Camera camera, int margin);
+    /// Effects of the samples' camera, which are uniform on the extended film.
+    static LensEffects sample_effects(const RenderSettings& settings);
     /// Calls pass(row) in parallel for all rows of the extended film.
     template <class Pass>
     void run(const Pass& pass, const KeepGoing& keep_going);
@@ -100,7 +109,6 @@ private:
 
     Camera camera_;
     RenderSettings settings_;
-    PixelFilter filter_;
     int margin_;
     TangentPath path_;
     OutlineRays outline_;

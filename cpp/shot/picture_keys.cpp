@@ -284,6 +284,11 @@ std::vector<ShotKey> picture_keys() {
         setting("max_spp", "--max-spp", "N", whole, kWhole,
          "Largest number of samples per pixel, unless spp is a number", "4096", {},
          set_noise<set_whole<2, kMaxSpp, &P::noise, &N::max_spp>>, get_value<&P::noise, &N::max_spp>),
+        setting("filter", "--filter", "NAME", text, one_of(kPixelFilters),
+         "Filter of the pixels; box: the pixel's own area; tent: two pixels wide; gaussian: three pixels wide, with a "
+         "standard deviation of half a pixel", "box", {},
+         set_named<named<kPixelFilters>, &P::settings, &S::filter>, get_name<kPixelFilters, &P::settings, &S::filter>,
+         "rc.render_gradient needs a smooth one (docs/picture-derivatives.md)."),
         setting("seed", "--seed", "N", whole, kWhole, "Seed of the random numbers", "0", {},
          set_whole<0, std::numeric_limits<std::uint32_t>::max(), &P::settings, &S::seed>, get_value<&P::settings, &S::seed>, "0 to 2^32 - 1."),
         setting("max_bounces", "--max-bounces", "N", whole_or_auto, "a whole number or auto",

@@ -106,7 +106,6 @@ if TYPE_CHECKING:
     from .derivatives import backpropagate_rays as backpropagate_rays
     from .derivatives import ray_derivatives as ray_derivatives
     from .derivatives.camera_parameters import CameraParameters as CameraParameters
-    from .derivatives.picture import render_filtered as render_filtered
     from .derivatives.picture import render_gradient as render_gradient
     from .derivatives.picture_fit import PictureFit as PictureFit
     from .derivatives.picture_fit import fit_pictures as fit_pictures
@@ -155,7 +154,7 @@ _TOOLS = {
     "calibration": "Calibration CalibrationFileError GeometryError PointStatus Vignetting",
     "derivatives": "Gradient RayDerivatives RayGradient Variable backpropagate_rays ray_derivatives",
     "derivatives.camera_parameters": "CameraParameters",  # loads scipy
-    "derivatives.picture": "render_filtered render_gradient",
+    "derivatives.picture": "render_gradient",
     "derivatives.picture_fit": "PictureFit fit_pictures",
     "derivatives.torch_picture": "torch_render",
     "job": "Job JobStatus",

@@ -3210,6 +3210,8 @@ class RenderSettings:
     noise_codes: The same noise goal in 8-bit codes of the picture with the linear tone curve, under every view.
     seconds: Time limit for taking samples, unless spp is a number. A warning is issued if the noise goal is not reached.
     max_spp: Largest number of samples per pixel, unless spp is a number [4096].
+    filter: Filter of the pixels; box: the pixel's own area; tent: two pixels wide; gaussian: three pixels wide, with a
+      standard deviation of half a pixel [box]. rc.render_gradient needs a smooth one (docs/picture-derivatives.md).
     seed: Seed of the random numbers [0]. 0 to 2^32 - 1.
     max_bounces: Largest number of bounces of light; 0: direct light only [auto: what the shot calls for]. 0 to 64. With
       auto, threshold_codes decides (docs/plan.md).
@@ -3256,6 +3258,7 @@ class RenderSettings:
         noise_codes: float | None = None,
         seconds: float | None = None,
         max_spp: int | None = None,
+        filter: str = "box",
         seed: int = 0,
         max_bounces: int | str = "auto",
         transport: str = "paths",
@@ -3285,6 +3288,11 @@ class RenderSettings:
     def effects(self) -> tuple[str, ...]:
         """
         Effects that are also simulated or, with a minus, left out, separated by commas after a "=": auto, none, dispersion, coatings, ghosts, film_reflection, diffraction, -motion_blur, -rolling_shutter [auto: what the shot calls for]. A list in shot files, such as ["dispersion", "-motion_blur"]; the empty list switches all effects off. With auto, the planner also selects the cheapest camera model that shows the effects (docs/plan.md). A warning is issued for effects that the lens cannot show.
+        """
+    @property
+    def filter(self) -> str:
+        """
+        Filter of the pixels; box: the pixel's own area; tent: two pixels wide; gaussian: three pixels wide, with a standard deviation of half a pixel [box]. rc.render_gradient needs a smooth one (docs/picture-derivatives.md).
         """
     @property
     def illuminant(self) -> str | None:
@@ -3563,15 +3571,10 @@ class _PictureGradient:
     Internal: use realcam.render_gradient.
     """
     def __init__(
-        self,
-        scene: Scene,
-        camera: Camera,
-        settings: RenderSettings,
-        filter: str,
-        variables: Sequence[tuple[str, int, int, int]],
+        self, scene: Scene, camera: Camera, settings: RenderSettings, variables: Sequence[tuple[str, int, int, int]]
     ) -> None:
         """
-        Prepares derivatives of a picture. filter: "tent" or "gaussian". variables: see Lens._ray_derivatives.
+        Prepares derivatives of a picture. variables: see Lens._ray_derivatives.
         The numbers of a camera are, in this order: the variables; translation (mm) and rotation (rad) of the film about its
         centre relative to the camera, along the film's axes; translation and rotation of the camera, along the camera's axes;
         and the radius of the diaphragm (mm).
@@ -3585,7 +3588,7 @@ class _PictureGradient:
         spp: int,
         outline_spp: int,
         terms: str = "both",
-        uniform: bool = False,
+        pairs: bool = True,
     ) -> NDArray[np.float32]:
         """
         Returns the derivatives of the picture along directions (P, N) of the numbers, (P, H, W, 3).
@@ -3603,17 +3606,23 @@ class _PictureGradient:
         spp: int,
         outline_spp: int,
         terms: str = "both",
-        uniform: bool = False,
+        pairs: bool = True,
     ) -> NDArray[np.float64]:
         """
         Returns the derivatives of sum(adjoint * picture) by all numbers of the camera, (N,).
-        adjoint: (H, W, 3). control: control variate of the radiance, (H, W, 3), or None; the derivatives are then those of
-        picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests.
+        adjoint: (H, W, 3). control: control variate of the radiance, (H, W, 3), or None; derivatives by the pose are then those
+        of picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests. pairs: False: all samples on
+        the film are independent, for comparison.
         """
     @property
     def number_count(self) -> int:
         """
         Number of numbers of the camera, N.
+        """
+    @property
+    def scene_moves(self) -> bool:
+        """
+        True if the scene moves during the exposure.
         """
     @property
     def unexplained_edges(self) -> tuple[int, int]:
@@ -4518,6 +4527,7 @@ class _SettingsKwargs(TypedDict, total=False):
     noise_codes: float | None
     seconds: float | None
     max_spp: int | None
+    filter: str
     seed: int
     max_bounces: int | str
     transport: str

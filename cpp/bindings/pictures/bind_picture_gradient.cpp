@@ -8,7 +8,6 @@
 #include <string>
 
 #include "../../embree/picture_gradient.hpp"
-#include "../../render/settings/setting_names.hpp"
 #include "../bindings.hpp"
 #include "../lens/lens_variables.hpp"
 #include "../values/arrays.hpp"
@@ -32,27 +31,31 @@ const float* control_of(const std::optional<InputArray<float>>& array, const Pic
 }
 
 /// Throws InputError if a number of samples is out of range.
-GradientSamples samples_of(std::int64_t seed, int spp, int outline_spp, const std::string& terms, bool uniform) {
+GradientSamples samples_of(std::int64_t seed, int spp, int outline_spp, const std::string& terms, bool pairs) {
     validate_spp(spp);
     if (outline_spp < 1 || outline_spp > (1 << 24)) throw InputError("outline_spp must lie between 1 and 16777216");
     if (terms != "both" && terms != "interior" && terms != "boundary")
         throw InputError("terms must be \"both\", \"interior\" or \"boundary\"");
-    return {seed_from(seed), spp, outline_spp, terms != "boundary", terms != "interior", uniform};
+    return {.seed = seed_from(seed),
+            .spp = spp,
+            .outline_spp = outline_spp,
+            .pairs = pairs,
+            .interior = terms != "boundary",
+            .boundary = terms != "interior"};
 }
 
 }  // namespace
 
 void bind_picture_gradient(py::module_& m) {
     const auto new_gradient = [](const Assembly& scene, const Camera& camera, const RenderSettings& settings,
-                                 const std::string& filter, const Variables& variables) {
-        const std::optional<PixelFilter> chosen = value_named(kPixelFilters, filter);
-        if (!chosen) throw InputError("unknown filter \"" + filter + "\"; expected " + one_of(kPixelFilters));
+                                 const Variables& variables) {
         std::vector<LensVariable> list = variables_from(variables);
         const Unlocked unlocked;
-        return std::make_unique<PictureGradient>(scene, camera, settings, *chosen, std::move(list));
+        return std::make_unique<PictureGradient>(scene, camera, settings, std::move(list));
     };
     const auto picture = [](PictureGradient& self, std::int64_t seed, int spp, bool uniform) {
-        const GradientSamples samples = samples_of(seed, spp, 1, "both", uniform);
+        GradientSamples samples = samples_of(seed, spp, 1, "both", false);
+        samples.uniform = uniform;
         std::vector<float> exposure;
         {
             const Unlocked unlocked;
@@ -62,8 +65,8 @@ void bind_picture_gradient(py::module_& m) {
     };
     const auto reverse = [](PictureGradient& self, const InputArray<float>& adjoint,
                             const std::optional<InputArray<float>>& control, std::int64_t seed, int spp,
-                            int outline_spp, const std::string& terms, bool uniform) {
-        const GradientSamples samples = samples_of(seed, spp, outline_spp, terms, uniform);
+                            int outline_spp, const std::string& terms, bool pairs) {
+        const GradientSamples samples = samples_of(seed, spp, outline_spp, terms, pairs);
         const float *of = picture_of(adjoint, self, "adjoint"), *less = control_of(control, self);
         std::vector<double> gradient;
         {
@@ -75,8 +78,8 @@ void bind_picture_gradient(py::module_& m) {
     };
     const auto forward = [](PictureGradient& self, const InputArray<double>& directions,
                             const std::optional<InputArray<float>>& control, std::int64_t seed, int spp,
-                            int outline_spp, const std::string& terms, bool uniform) {
-        const GradientSamples samples = samples_of(seed, spp, outline_spp, terms, uniform);
+                            int outline_spp, const std::string& terms, bool pairs) {
+        const GradientSamples samples = samples_of(seed, spp, outline_spp, terms, pairs);
         const float* less = control_of(control, self);
         const auto numbers = static_cast<py::ssize_t>(self.number_count());
         if (directions.ndim() != 2 || directions.shape(1) != numbers)
@@ -90,8 +93,8 @@ void bind_picture_gradient(py::module_& m) {
         return array_from(std::move(pictures), {directions.shape(0), self.height(), self.width(), 3});
     };
     py::class_<PictureGradient>(m, "_PictureGradient", "Internal: use realcam.render_gradient.")
-        .def(py::init(new_gradient), "scene"_a, "camera"_a, "settings"_a, "filter"_a, "variables"_a,
-             R"(Prepares derivatives of a picture. filter: "tent" or "gaussian". variables: see Lens._ray_derivatives.
+        .def(py::init(new_gradient), "scene"_a, "camera"_a, "settings"_a, "variables"_a,
+             R"(Prepares derivatives of a picture. variables: see Lens._ray_derivatives.
 The numbers of a camera are, in this order: the variables; translation (mm) and rotation (rad) of the film about its
 centre relative to the camera, along the film's axes; translation and rotation of the camera, along the camera's axes;
 and the radius of the diaphragm (mm).)")
@@ -99,13 +102,16 @@ and the radius of the diaphragm (mm).)")
             "picture", picture, py::kw_only(), "seed"_a, "spp"_a, "uniform"_a = false,
             R"(Returns the picture with the filter, (H, W, 3), in lux seconds. uniform: of uniform light of radiance 1.)")
         .def("reverse", reverse, "adjoint"_a, "control"_a, py::kw_only(), "seed"_a, "spp"_a, "outline_spp"_a,
-             "terms"_a = "both", "uniform"_a = false,
+             "terms"_a = "both", "pairs"_a = true,
              R"(Returns the derivatives of sum(adjoint * picture) by all numbers of the camera, (N,).
-adjoint: (H, W, 3). control: control variate of the radiance, (H, W, 3), or None; the derivatives are then those of
-picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests.)")
+adjoint: (H, W, 3). control: control variate of the radiance, (H, W, 3), or None; derivatives by the pose are then those
+of picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests. pairs: False: all samples on
+the film are independent, for comparison.)")
         .def("forward", forward, "directions"_a, "control"_a, py::kw_only(), "seed"_a, "spp"_a, "outline_spp"_a,
-             "terms"_a = "both", "uniform"_a = false,
+             "terms"_a = "both", "pairs"_a = true,
              R"(Returns the derivatives of the picture along directions (P, N) of the numbers, (P, H, W, 3).)")
+        .def_property_readonly("scene_moves", &PictureGradient::scene_moves,
+                               "True if the scene moves during the exposure.")
         .def_property_readonly("number_count", &PictureGradient::number_count, "Number of numbers of the camera, N.")
         .def_property_readonly(
             "unexplained_edges",

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../../optics/coating/fit_coatings.hpp"
+#include "../film/pixel_filter.hpp"
 #include "../models/pupil_sampling.hpp"
 #include "diffraction/diffraction_tables.hpp"
 #include "direct_lens_path.hpp"
@@ -20,6 +21,7 @@ struct LensEffects : Effects {
     std::optional<LensFilter> filter = {};  ///< applies to the illuminant
     std::optional<GhostChoice> ghosts = {};  ///< std::nullopt: no ghosts
     PupilSampling pupil_sampling = PupilSampling::outline;
+    PixelFilter pixel_filter = PixelFilter::box;
     std::optional<WavelengthRange> even_wavelengths = {};  ///< replaces the illuminant: uniform over these wavelengths
 
     bool operator==(const LensEffects&) const = default;

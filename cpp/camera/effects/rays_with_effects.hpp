@@ -45,7 +45,8 @@ REALCAM_HD inline void generate_surface_rays(const CameraView& camera, const Sam
         start_lens_rays<lens_kind>(camera, block, film, u, inside, rays);
         trace_surfaces<lens_kind, effects.coatings>(camera.lens, inside, ManyWavelengths{view.to_scene, variable},
                                                     camera.coatings.to_scene, variable, wavelengths.passed[0]);
-        if (view.cell_count > 1) find_shares<lens_kind, effects.coatings>(camera, block, inside, film, wavelengths);
+        if (shares_wavelengths(camera))
+            find_shares<lens_kind, effects.coatings>(camera, block, inside, film, wavelengths);
     } else {
         Lanes<float, N> passed;
         start_lens_rays<lens_kind>(camera, block, film, u, inside, rays);
@@ -78,7 +79,7 @@ REALCAM_HD inline void generate_rays_with(const CameraView& camera, const Sample
     } else {
         generate_rays_from<lens_kind>(camera, block, film, rays);
         if constexpr (effects.have_wavelengths()) {
-            if (camera.dispersion.cell_count > 1) find_shares_of_landings(camera, block, film, wavelengths);
+            if (shares_wavelengths(camera)) find_shares_of_landings(camera, block, film, wavelengths);
         }
     }
 }

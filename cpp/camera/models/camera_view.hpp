@@ -9,6 +9,7 @@
 #include "../../optics/trace/lens_view.hpp"
 #include "../effects/effect_views.hpp"
 #include "../effects/traced_lights_view.hpp"
+#include "../film/pixel_filter.hpp"
 #include "bundle_motion_view.hpp"
 #include "lens_map_view.hpp"
 #include "pixel_pupil.hpp"
@@ -76,6 +77,7 @@ struct CameraFrame {
 struct CameraView : CameraFrame, EffectViews {
     CameraModel model;
     int width, height;  ///< size of the picture, pixels
+    PixelFilter filter;
     float film_half_width, film_half_height;  ///< mm
     Vec2f film_centre;  ///< film centre, from the axis, mm
     float film_distance;  ///< last vertex to film, mm

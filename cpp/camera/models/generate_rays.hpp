@@ -69,8 +69,8 @@ struct CameraRays {
     Lanes<std::int32_t, N> passed;  ///< 1 if it left the lens
 };
 
-/// Film point of a sample, mm. `offset`: position in the pixel, each coordinate in [0, 1). The lens inverts the
-/// picture, so the film's axes are opposite to the picture's.
+/// Film point of a sample, mm. `offset`: position relative to the pixel's upper left corner, in pixels. The lens
+/// inverts the picture, so the film's axes are opposite to the picture's.
 REALCAM_INLINE Vec2f film_point(const CameraView& camera, std::int32_t column, std::int32_t row, Vec2f offset) {
     const float x = quotient(2.0f * (static_cast<float>(column) + offset.x), static_cast<float>(camera.width)) - 1.0f;
     const float y = quotient(2.0f * (static_cast<float>(row) + offset.y), static_cast<float>(camera.height)) - 1.0f;
@@ -170,15 +170,25 @@ REALCAM_HD inline void move_bundles(const CameraView& camera, const Points& film
     }
 }
 
-/// Film point of each sample, uniform in its pixel.
+/// Position of a sample relative to its pixel's upper left corner, in pixels, with the density of the camera's filter.
+/// `u`: random numbers in [0, 1).
+REALCAM_INLINE Vec2f filtered_offset(PixelFilter filter, Vec2f u) {
+    if (filter == PixelFilter::box) return u;
+    return {0.5f + sample_filter(filter, u.x), 0.5f + sample_filter(filter, u.y)};
+}
+
+/// Film point of each sample, with the density of the camera's filter about its pixel's centre.
 template <int N>
 struct PixelPoints {
     const CameraView& camera;
     const SampleBlock<N>& block;
-    LaneNumbers<N> u;
+    LaneNumbers<N> u;  ///< positions relative to the pixel's corner
 
     REALCAM_INLINE PixelPoints(const CameraView& view, const SampleBlock<N>& samples)
-        : camera(view), block(samples), u(samples, dimension::film) {}
+        : camera(view), block(samples), u(samples, dimension::film) {
+        if (view.filter != PixelFilter::box)
+            u.transform([&](int, Vec2f numbers) { return filtered_offset(view.filter, numbers); });
+    }
     REALCAM_INLINE Vec2f operator[](int lane) const {
         return film_point(camera, block.column[lane], block.row[lane], u[lane]);
     }

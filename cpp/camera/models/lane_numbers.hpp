@@ -78,6 +78,12 @@ public:
     }
     /// Two random numbers in [0, 1) of a lane or, for a selection of lanes, of an element.
     REALCAM_INLINE Vec2f operator[](int slot) const { return values_[slot]; }
+    /// Replaces the numbers u of each lane by f(lane, u).
+    template <class F>
+    REALCAM_INLINE void transform(F&& f) {
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) values_.set(i, f(i, values_[i]));
+    }
 
 private:
     using Integers = std::uint32_t[N];

@@ -53,6 +53,7 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     metadata.iso = camera.iso;
     metadata.seed = settings.seed;
     metadata.spp = settings.spp;
+    metadata.filter = settings.filter;
     metadata.transport = settings.transport;
     metadata.clamp_cd_m2 = settings.clamp;
     for (const std::string& name : names_of(settings.effects))
@@ -86,8 +87,8 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
                              numbers({p.right.x, p.right.y, p.right.z, t.x, p.down.x, p.down.y, p.down.z, t.y,
                                       p.forward.x, p.forward.y, p.forward.z, t.z}));
     }
-    // Defaults are not written: full light transport, a centred film, a round diaphragm, and a global shutter that
-    // opens at time 0.
+    // Defaults are not written: the box filter, full light transport, a centred film, a round diaphragm, and a global
+    // shutter that opens at time 0.
     if (film_shift_mm.x != 0 || film_shift_mm.y != 0)
         entries.emplace_back("realcam:film_shift_mm", numbers({film_shift_mm.x, film_shift_mm.y}));
     if (iris.blades > 0) {
@@ -95,6 +96,7 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
         entries.emplace_back("realcam:blade_rounding", number(iris.rounding));
         entries.emplace_back("realcam:blade_rotation_deg", number(iris.rotation_rad * 180 / std::numbers::pi));
     }
+    if (filter != PixelFilter::box) entries.emplace_back("realcam:filter", name_among(kPixelFilters, filter));
     if (transport != LightTransport::paths) entries.emplace_back("realcam:transport", name_of(transport));
     if (shutter_opens_s != 0) entries.emplace_back("realcam:shutter_opens_s", number(shutter_opens_s));
     if (readout_time_s > 0) entries.emplace_back("realcam:readout_time_s", number(readout_time_s));

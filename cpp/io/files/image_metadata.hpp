@@ -27,6 +27,7 @@ struct ImageMetadata {
     double iso = 100;
     std::uint32_t seed = 0;
     int spp = 0;  ///< samples per pixel
+    PixelFilter filter = PixelFilter::box;
     LightTransport transport = LightTransport::paths;
     double clamp_cd_m2 = 0;  ///< largest radiance of indirect light; 0: no limit
     /// Names of effects, separated by commas, and the illuminant as text; may be empty.

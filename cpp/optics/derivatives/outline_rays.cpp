@@ -85,10 +85,102 @@ __attribute__((flatten)) REALCAM_CLONES void OutlineRays::trace(const DirectionL
     for (int i = 0; i < kLanes; ++i) passes[i] = rays.status[i] == 0;
 }
 
+OutlineRays::NearestRim OutlineRays::nearest_rim(const std::vector<TangentPath::Crossing>& crossings, int lane) const {
+    NearestRim nearest{{std::numeric_limits<double>::max(), {1, 0}, 0}, 0, 0};
+    for (int k = 0; k < view_.count; ++k) {
+        const Vec3d at = crossings[static_cast<std::size_t>(k)].origin[lane];
+        const Edge edge = edge_at(view_.surfaces[k], {at.x, at.y});
+        if (edge.distance < nearest.edge.distance) nearest = {edge, k, 0};
+    }
+    const auto& crossing = crossings[static_cast<std::size_t>(nearest.surface)];
+    const Vec3d p = crossing.direction[lane], moved = crossing.origin_tangent[lane];
+    const double rise = moved.z / p.z;
+    const Vec2d normal = nearest.edge.normal;
+    nearest.speed = normal.x * (moved.x - rise * p.x) + normal.y * (moved.y - rise * p.y);
+    return nearest;
+}
+
+__attribute__((flatten)) REALCAM_CLONES void OutlineRays::measure(const DirectionLine (&lines)[kLanes],
+                                                                  const double (&t)[kLanes],
+                                                                  const WavelengthsInDouble* wavelengths,
+                                                                  double (&clearance)[kLanes]) const {
+    TangentPath::Rays with_tangents = start(lines, t);
+    auto& rays = static_cast<LensRays<double, kLanes>&>(with_tangents);
+    for (double& distance : clearance) distance = std::numeric_limits<double>::max();
+    for (int k = 0; k < view_.count; ++k) {
+        const SurfaceView<double>& surface = view_.surfaces[k];
+        if (view_.free.frames && view_.free.frames[k].before.changes) change_frame(view_.free.frames[k].before, rays);
+        const FreeformView<double>* freeform = view_.free.freeforms ? view_.free.freeforms + k : nullptr;
+        SurfaceView<double> without_rim = surface;
+        without_rim.rim_squared = std::numeric_limits<double>::max();
+        without_rim.hole_squared = -1;
+        without_rim.has_blades = 0;
+        const LensView<double> one{&without_rim, 1, LensKind::any, {}, {nullptr, freeform, nullptr}};
+        if (wavelengths)
+            trace_lens<LensKind::any>(one, rays, NoRecord{},
+                                      WavelengthsInDouble{wavelengths->surfaces + k, wavelengths->variable});
+        else
+            trace_lens<LensKind::any>(one, rays);
+        const double rim = std::sqrt(surface.rim_squared);
+        if (surface.has_blades || surface.hole_squared > 0) {
+            for (int i = 0; i < kLanes; ++i)
+                clearance[i] = std::min(clearance[i], edge_at(surface, {rays.origin.x[i], rays.origin.y[i]}).distance);
+        } else {
+            REALCAM_LANES
+            for (int i = 0; i < kLanes; ++i) {
+                const double x = rays.origin.x[i], y = rays.origin.y[i], distance = rim - std::sqrt(x * x + y * y);
+                clearance[i] = select(distance < clearance[i], distance, clearance[i]);
+            }
+        }
+    }
+    for (int i = 0; i < kLanes; ++i)
+        if (rays.status[i] != 0) clearance[i] = -std::numeric_limits<double>::infinity();
+}
+
+bool OutlineRays::refine(const DirectionLine (&lines)[kLanes], const WavelengthsInDouble* wavelengths,
+                         const double (&low)[kLanes], const double (&high)[kLanes], const int (&low_passes)[kLanes],
+                         double (&t)[kLanes]) const {
+    constexpr int kSteps = 8;
+    constexpr double kError = 1e-8;  // of the interval
+    double open[kLanes], shut[kLanes], last[kLanes], last_clearance[kLanes], clearance[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+        open[i] = low_passes[i] ? low[i] : high[i], shut[i] = low_passes[i] ? high[i] : low[i];
+        last[i] = open[i], t[i] = shut[i];
+    }
+    measure(lines, last, wavelengths, last_clearance);
+    bool is_done = false;
+    for (int step = 0; step < kSteps && !is_done; ++step) {
+        measure(lines, t, wavelengths, clearance);
+        is_done = true;
+        for (int i = 0; i < kLanes; ++i) {
+            (clearance[i] > 0 ? open : shut)[i] = t[i];
+            // The secant method, and a halving where it leaves the interval.
+            double next = t[i] - clearance[i] * (t[i] - last[i]) / (clearance[i] - last_clearance[i]);
+            if (clearance[i] == 0) next = t[i];
+            const bool is_inside = (next - open[i]) * (next - shut[i]) <= 0;
+            last[i] = t[i], last_clearance[i] = clearance[i];
+            t[i] = is_inside ? next : 0.5 * (open[i] + shut[i]);
+            // The error of a step is about the product of the last two, in units of the pupil.
+            is_done = is_done && std::fabs(t[i] - last[i]) <= 1e-5 * std::fabs(high[i] - low[i]);
+        }
+    }
+    // Rays on both sides prove the edge.
+    int passes[kLanes], blocked[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+        const double error = kError * (low_passes[i] ? high[i] - low[i] : low[i] - high[i]);
+        open[i] = t[i] - error, shut[i] = t[i] + error;
+    }
+    trace(lines, open, wavelengths, passes);
+    trace(lines, shut, wavelengths, blocked);
+    for (int i = 0; i < kLanes; ++i)
+        if (high[i] > low[i] && (!passes[i] || blocked[i])) return false;
+    return true;
+}
+
 int OutlineRays::find(const TangentPath& path, const DirectionLine (&lines)[kLanes], double end,
                       const WavelengthsInDouble* wavelengths, OutlinePoint (&points)[kMostPoints][kLanes]) const {
     constexpr int kProbes = 6;  // intervals in which one change is sought
-    constexpr int kHalvings = 26;  // leave 1e-8 of an interval
+    constexpr int kHalvings = 26;  // leave 1e-8 of an interval, also where no rim is
     for (auto& lanes : points)
         for (OutlinePoint& point : lanes) point = {};
     double low[kMostPoints][kLanes], high[kMostPoints][kLanes];
@@ -112,44 +204,37 @@ int OutlineRays::find(const TangentPath& path, const DirectionLine (&lines)[kLan
     for (int n = 0; n < most; ++n) {
         for (int i = 0; i < kLanes; ++i)
             if (counts[i] <= n) low[n][i] = high[n][i] = 0, low_passes[n][i] = 1;
-        for (int halving = 0; halving < kHalvings; ++halving) {
-            int passes[kLanes];
-            for (int i = 0; i < kLanes; ++i) t[i] = 0.5 * (low[n][i] + high[n][i]);
-            trace(lines, t, wavelengths, passes);
-            for (int i = 0; i < kLanes; ++i) (passes[i] == low_passes[n][i] ? low : high)[n][i] = t[i];
+        if (!refine(lines, wavelengths, low[n], high[n], low_passes[n], t)) {
+            for (int halving = 0; halving < kHalvings; ++halving) {
+                int passes[kLanes];
+                for (int i = 0; i < kLanes; ++i) t[i] = 0.5 * (low[n][i] + high[n][i]);
+                trace(lines, t, wavelengths, passes);
+                for (int i = 0; i < kLanes; ++i) (passes[i] == low_passes[n][i] ? low : high)[n][i] = t[i];
+            }
+            for (int i = 0; i < kLanes; ++i) t[i] = low_passes[n][i] ? low[n][i] : high[n][i];
         }
-        for (int i = 0; i < kLanes; ++i) t[i] = low_passes[n][i] ? low[n][i] : high[n][i];
         TangentPath::Rays rays = start(lines, t);
         std::vector<TangentPath::Crossing> crossings;
         path.record(rays, crossings, wavelengths);
         for (int i = 0; i < kLanes; ++i) {
             if (counts[i] <= n) continue;
+            const NearestRim rim = nearest_rim(crossings, i);
+            const Vec3d p = crossings[static_cast<std::size_t>(rim.surface)].direction[i];
+            // Rays that are flatter than a steep surface pass its rim's plane outside the rim if they pass the surface
+            // inside it.
+            const double side = (rim.speed > 0) == (low_passes[n][i] != 0) ? 1 : -1;
+            const Vec2d normal = {side * rim.edge.normal.x, side * rim.edge.normal.y};
             OutlinePoint& point = points[n][i];
-            double nearest = std::numeric_limits<double>::max();
-            for (int k = 0; k < view_.count; ++k) {
-                const auto& crossing = crossings[static_cast<std::size_t>(k)];
-                const Vec3d at = crossing.origin[i];
-                const Edge edge = edge_at(view_.surfaces[k], {at.x, at.y});
-                if (!(std::fabs(edge.distance) < nearest)) continue;
-                nearest = std::fabs(edge.distance);
-                const Vec3d p = crossing.direction[i], moved = crossing.origin_tangent[i];
-                const double rise = moved.z / p.z;
-                const double speed = edge.normal.x * (moved.x - rise * p.x) + edge.normal.y * (moved.y - rise * p.y);
-                // Rays that are flatter than a steep surface pass its rim's plane outside the rim if they pass the
-                // surface inside it.
-                const double side = (speed > 0) == (low_passes[n][i] != 0) ? 1 : -1;
-                const Vec2d normal = {side * edge.normal.x, side * edge.normal.y};
-                point = {t[i],
-                         k,
-                         {normal.x, normal.y, -(normal.x * p.x + normal.y * p.y) / p.z},
-                         edge.stop_rate,
-                         1 / std::fabs(speed),
-                         rays.origin[i],
-                         rays.direction[i]};
-            }
-            // The halvings leave 1e-8 of the pupil's size.
+            point = {t[i],
+                     rim.surface,
+                     {normal.x, normal.y, -(normal.x * p.x + normal.y * p.y) / p.z},
+                     rim.edge.stop_rate,
+                     1 / std::fabs(rim.speed),
+                     rays.origin[i],
+                     rays.direction[i]};
+            // The edge is known to 1e-8 of the pupil's size.
             const double size = std::sqrt(view_.surfaces[point.surface].rim_squared);
-            if (!(nearest < 1e-5 * size) || !std::isfinite(point.inverse_speed)) {
+            if (!(std::fabs(rim.edge.distance) < 1e-5 * size) || !std::isfinite(point.inverse_speed)) {
                 point = {};
                 ++unexplained;
             }

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <vector>
 
 #include "../trace/film_frame.hpp"
 #include "tangent_path.hpp"
@@ -51,6 +52,22 @@ private:
         double stop_rate;
     };
     Edge edge_at(const SurfaceView<double>& surface, Vec2d at) const;
+    /// Edge that is nearest to a lane's ray, and the speed per t with which the ray approaches it.
+    struct NearestRim {
+        Edge edge;
+        int surface;
+        double speed;
+    };
+    NearestRim nearest_rim(const std::vector<TangentPath::Crossing>& crossings, int lane) const;
+    /// Finds the edges between `low` and `high` by the secant method, and sets t. Returns false if an edge is not known
+    /// to 1e-8 of its interval: where no rim explains it, or an interval has several edges.
+    bool refine(const DirectionLine (&lines)[kLanes], const WavelengthsInDouble* wavelengths,
+                const double (&low)[kLanes], const double (&high)[kLanes], const int (&low_passes)[kLanes],
+                double (&t)[kLanes]) const;
+    /// Sets `clearance` to the distance of each lane's ray at t from the nearest edge, mm: positive for rays that pass,
+    /// and minus infinity for rays that miss a surface or are totally reflected.
+    void measure(const DirectionLine (&lines)[kLanes], const double (&t)[kLanes],
+                 const WavelengthsInDouble* wavelengths, double (&clearance)[kLanes]) const;
     /// Sets `passes` to 1 for each lane whose ray at t passes the lens.
     void trace(const DirectionLine (&lines)[kLanes], const double (&t)[kLanes], const WavelengthsInDouble* wavelengths,
                int (&passes)[kLanes]) const;

@@ -171,8 +171,8 @@ namespace realcam {
 /// requires that all pixels take equally many samples and that the excess is accumulated: no layer may need the
 /// variance of a pixel's own samples, or those of half the pupil.
 inline bool shares_samples(const CameraView& camera, const RenderSettings& settings, const PixelCounts& counts) {
-    return camera.effects.share_pixels() && !counts.counts && !camera.pixel_pupils.known && camera.row_time == 0.0f &&
-           balances_wavelengths(settings);
+    return camera.effects.share_pixels() && camera.filter == PixelFilter::box && !counts.counts &&
+           !camera.pixel_pupils.known && camera.row_time == 0.0f && balances_wavelengths(settings);
 }
 
 }  // namespace realcam

@@ -90,10 +90,16 @@ REALCAM_INLINE void start_film_rays(const CameraView& camera, const GhostView& g
         const int row = static_cast<int>(u.y * static_cast<float>(camera.height));
         film.block.column[i] = select(column < camera.width, column, camera.width - 1);
         film.block.row[i] = select(row < camera.height, row, camera.height - 1);
-        const float x = camera.film_centre.x + (1.0f - 2.0f * u.x) * camera.film_half_width,
-                    y = camera.film_centre.y + (2.0f * u.y - 1.0f) * camera.film_half_height;
+        Vec2f at = {camera.film_centre.x + (1.0f - 2.0f * u.x) * camera.film_half_width,
+                    camera.film_centre.y + (2.0f * u.y - 1.0f) * camera.film_half_height};
+        if (camera.filter != PixelFilter::box) {
+            const Vec2f in_pixel = {u.x * static_cast<float>(camera.width) - static_cast<float>(film.block.column[i]),
+                                    u.y * static_cast<float>(camera.height) - static_cast<float>(film.block.row[i])};
+            at = film_point(camera, film.block.column[i], film.block.row[i],
+                            filtered_offset(camera.filter, {below_one(in_pixel.x), below_one(in_pixel.y)}));
+        }
         const FilmRay ray =
-            film_ray<lens_kind>(camera, ghosts, block.path_index, {x, y}, film.block.random(i, dimension::pupil));
+            film_ray<lens_kind>(camera, ghosts, block.path_index, at, film.block.random(i, dimension::pupil));
         film.rays.origin.set(i, ray.origin);
         film.rays.direction.set(i, ray.direction);
         film.rays.status[i] = 0;

@@ -31,15 +31,30 @@ REALCAM_INLINE Vec3f towards_light(const CameraView& camera, const CameraFrame& 
     return receiver + light.distance * light.direction - centre_of_projection(camera, frame);
 }
 
-/// Returns the index of the pixel at a film point, mm; -1 if the point lies outside the film.
-REALCAM_INLINE std::int32_t pixel_at(const CameraView& camera, float x, float y) {
+/// Pixel for which a sample's light counts, and the factor of that light.
+struct PixelChoice {
+    std::int32_t index;  ///< -1: none
+    float weight;
+};
+
+/// Returns the pixel at a film point, mm. With a filter other than the box, several pixels have a part of the light:
+/// one of them is chosen with a probability that is proportional to its part. `number`: random bits of the sample.
+REALCAM_INLINE PixelChoice choose_pixel(const CameraView& camera, Vec2f at, std::uint32_t number) {
     const float column =
-        0.5f * static_cast<float>(camera.width) * (1.0f - (x - camera.film_centre.x) / camera.film_half_width);
+        0.5f * static_cast<float>(camera.width) * (1.0f - (at.x - camera.film_centre.x) / camera.film_half_width);
     const float row =
-        0.5f * static_cast<float>(camera.height) * (1.0f + (y - camera.film_centre.y) / camera.film_half_height);
-    const bool inside = (column >= 0.0f) & (column < static_cast<float>(camera.width)) & (row >= 0.0f) &
-                        (row < static_cast<float>(camera.height));
-    return inside ? static_cast<std::int32_t>(row) * camera.width + static_cast<std::int32_t>(column) : -1;
+        0.5f * static_cast<float>(camera.height) * (1.0f + (at.y - camera.film_centre.y) / camera.film_half_height);
+    const float margin = filter_radius(camera.filter) - 0.5f;
+    const bool inside = (column >= -margin) & (column < static_cast<float>(camera.width) + margin) & (row >= -margin) &
+                        (row < static_cast<float>(camera.height) + margin);
+    if (!inside) return {-1, 0.0f};
+    if (camera.filter == PixelFilter::box)
+        return {static_cast<std::int32_t>(row) * camera.width + static_cast<std::int32_t>(column), 1.0f};
+    constexpr std::uint32_t kColumnSalt = 0x636f6c75u, kRowSalt = 0x726f7773u;
+    const FilterChoice x = choose_by_filter(camera.filter, column, unit_float(hash32(number, kColumnSalt))),
+                       y = choose_by_filter(camera.filter, row, unit_float(hash32(number, kRowSalt)));
+    const bool on_film = (x.index >= 0) & (x.index < camera.width) & (y.index >= 0) & (y.index < camera.height);
+    return {on_film ? y.index * camera.width + x.index : -1, x.weight * y.weight};
 }
 
 /// Returns the time from the beginning of the first row's exposure to a time after which no row counts samples (see
@@ -262,9 +277,10 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
                                   sample_2d(stream, sample, ghost_dimension::diffraction + 1), i, samples);
             }
         }
-        pixel[i] = pixel_at(camera, film.x, film.y);
+        const PixelChoice chosen = choose_pixel(camera, film, samples.number[i]);
+        pixel[i] = chosen.index;
         if (pixel[i] < 0) continue;
-        Color c = (irradiance * passed.of_unpolarised(i)) * samples.color[i];
+        Color c = (chosen.weight * irradiance * passed.of_unpolarised(i)) * samples.color[i];
         if constexpr (has_wavelengths) c = film_color(camera.dispersion, samples.cell_position[i], c);
         if constexpr (scene_kind == SceneKind::any) {
             c = exposure_weight(camera, pixel[i] / camera.width, samples.time[i]) * c;

@@ -11,6 +11,7 @@ struct NoProbe {
 /// Film samples of a picture for its derivatives, with the random numbers of the picture.
 template <int N>
 struct FilmSamples {
+    Lanes<std::int32_t, N> mirrored;  ///< set by the caller; 1: the film point is reflected in the pixel's centre
     Vec2Lanes<float, N> pixel;  ///< film point, in pixels from the upper left corner of the film
     Vec3Lanes<float, N> origin, direction;  ///< ray at the film, see FilmRaySample
     CameraRays<N> rays;
@@ -29,10 +30,13 @@ REALCAM_HD inline void sample_wavelengths(const CameraView& camera, const Sample
     for (int i = 0; i < N; ++i) samples.variable[i] = camera.dispersion.variable.at(samples.wavelengths.nm[i]);
 }
 
-/// Samples film points, pupil points, times and wavelengths, and traces the rays through the lens.
+/// Samples film points (see FilmSamples::mirrored), pupil points, times and wavelengths, and traces the rays through
+/// the lens.
 template <LensKind lens_kind, int N>
 REALCAM_HD inline void sample_film(const CameraView& camera, const SampleBlock<N>& block, FilmSamples<N>& samples) {
-    const PixelPoints<N> film(camera, block);
+    PixelPoints<N> film(camera, block);
+    film.u.transform(
+        [&](int lane, Vec2f u) { return select(samples.mirrored[lane] != 0, Vec2f{1.0f - u.x, 1.0f - u.y}, u); });
     const LaneNumbers<N> u(block, dimension::pupil);
     for (int i = 0; i < N; ++i) {
         samples.pixel.set(
@@ -55,7 +59,7 @@ REALCAM_HD inline void sample_film(const CameraView& camera, const SampleBlock<N
 }
 
 /// Traces the paths of rays that have left the lens; results.irradiance becomes the ray's weight times its radiance.
-template <int N, class SceneT>
+template <SceneKind scene_kind, int N, class SceneT>
 REALCAM_HD inline void trace_radiance(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                       const SampleBlock<N>& block, const CameraRays<N>& rays,
                                       const Lanes<float, N>& time, SceneT&& scene, PathResults<N>& results) {
@@ -64,7 +68,7 @@ REALCAM_HD inline void trace_radiance(const SceneView& view, const CameraView& c
     for (int i = 0; i < N; ++i) path.rays.time[i] = time[i];
     start_paths(rays, path, results);
     for (int bounce = 0;
-         advance_paths<SceneKind::any>(view, camera, settings, block, bounce, scene, NoProbe{}, path, results);)
+         advance_paths<scene_kind>(view, camera, settings, block, bounce, scene, NoProbe{}, path, results);)
         ++bounce;
 }
 

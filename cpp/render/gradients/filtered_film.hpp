@@ -1,27 +1,9 @@
 #pragma once
-#include <cmath>
-
 #include "../../camera/film/pixel_filter.hpp"
 #include "../../math/color.hpp"
 #include "../../math/vec3.hpp"
 
 namespace REALCAM_NAMESPACE {
-
-/// Pixels that a film point counts for, with the filter's weights. A point of the film counts for the pixels whose
-/// filter does not vanish there, at most four along each axis.
-struct FilterWeights {
-    static constexpr int kMost = 4;
-
-    int first;  ///< first column or row
-    FilterValue of[kMost];
-
-    /// `position`: of the film point along columns or rows, in pixels from the picture's edge.
-    REALCAM_INLINE FilterWeights(PixelFilter filter, float position) {
-        const float lowest = position - 0.5f - filter_radius(filter);
-        first = static_cast<int>(std::floor(lowest)) + 1;
-        for (int i = 0; i < kMost; ++i) of[i] = filter_value(filter, position - 0.5f - static_cast<float>(first + i));
-    }
-};
 
 /// Calls f(index of the pixel, value of its filter, derivatives of that value along columns and rows) for each pixel of
 /// a picture that a film point counts for. `at`: the film point, in pixels from the picture's upper left corner.
@@ -30,10 +12,10 @@ REALCAM_INLINE void for_filtered_pixels(PixelFilter filter, int width, int heigh
     const FilterWeights columns(filter, at.x), rows(filter, at.y);
     for (int j = 0; j < FilterWeights::kMost; ++j) {
         const int row = rows.first + j;
-        if (row < 0 || row >= height) continue;
+        if (row < 0 || row >= height || rows.of[j].value == 0) continue;
         for (int i = 0; i < FilterWeights::kMost; ++i) {
             const int column = columns.first + i;
-            if (column < 0 || column >= width) continue;
+            if (column < 0 || column >= width || columns.of[i].value == 0) continue;
             const FilterValue x = columns.of[i], y = rows.of[j];
             f(row * width + column, x.value * y.value, Vec2f{x.slope * y.value, x.value * y.slope});
         }

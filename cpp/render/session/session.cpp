@@ -259,8 +259,9 @@ bool Session::is_same_picture(const Assembly& scene, const Camera& camera, const
            camera.film == camera_.film && camera.pose == camera_.pose && camera.model == camera_.model &&
            is_same_exposure(scene, camera) && settings.seed == settings_.seed && settings.path() == settings_.path() &&
            settings.effects == settings_.effects && settings.illuminant == settings_.illuminant &&
-           settings.lens_filter == settings_.lens_filter && settings.pupil_sampling == settings_.pupil_sampling &&
-           settings.light_tracing == settings_.light_tracing && has_sums_for(settings.layers);
+           settings.lens_filter == settings_.lens_filter && settings.filter == settings_.filter &&
+           settings.pupil_sampling == settings_.pupil_sampling && settings.light_tracing == settings_.light_tracing &&
+           has_sums_for(settings.layers);
 }
 
 Assembly Session::with_shapes_in_exposure(const Assembly& scene, const Camera& camera, const EffectChoice& effects) {

@@ -9,7 +9,7 @@
 namespace realcam {
 
 LensEffects RenderSettings::lens_effects() const {
-    return {effects, spectral_light(), lens_filter, ghost_choice(), pupil_sampling};
+    return {effects, spectral_light(), lens_filter, ghost_choice(), pupil_sampling, filter};
 }
 
 std::optional<GhostChoice> RenderSettings::ghost_choice() const {

@@ -65,6 +65,7 @@ struct RenderSettings {
     /// Filter in front of the lens; a coloured one needs effects with wavelengths.
     std::optional<LensFilter> lens_filter = {};
     std::optional<NoiseGoal> noise = {};  ///< goal of adaptive sampling, instead of spp
+    PixelFilter filter = PixelFilter::box;  ///< of pixels
     PupilSampling pupil_sampling = PupilSampling::outline;  ///< for a full lens
     LightTracing light_tracing = LightTracing::weighted;  ///< for a full lens
 

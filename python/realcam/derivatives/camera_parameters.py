@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from .._core import Camera, InputError, Lens, RenderSettings, Scene
+from ..render import render
 from .dual_array import Doubles
-from .picture import PARAMETERS, Floats, Parameter, focus_rates, render_filtered, render_gradient, stop_rate
+from .picture import PARAMETERS, Floats, Parameter, final_settings, render_gradient, ring_rates
 from .variable import SETTABLE, Variable, check_surface_exists, with_values
 
 if TYPE_CHECKING:
@@ -90,12 +91,12 @@ class CameraParameters:
         scene: Scene,
         values: ArrayLike,
         *,
-        filter: str = "tent",
         settings: RenderSettings | None = None,
         **changes: Unpack[_SettingsKwargs],
     ) -> Floats:
         """Returns the picture with these values, as rc.render_gradient differentiates it: lux seconds, (H, W, 3)."""
-        return render_filtered(scene, self.camera_at(values), filter=filter, settings=settings, **changes)
+        final = final_settings(settings, changes).with_(light_tracing="off")
+        return render(scene, self.camera_at(values), final, device="cpu").pixels
 
     def gradient(
         self, scene: Scene, values: ArrayLike, adjoint: ArrayLike | None = None, **arguments: Any
@@ -118,10 +119,10 @@ class CameraParameters:
                 if parameter in names:
                     return dict(zip(names, matrix[:, names.index(parameter)].tolist(), strict=True))
             # The rings' scales are those of the lens of `camera`, whose surfaces are not changed.
-            if parameter == "focus_distance_m":
-                return dict(focus_rates(self._turned(at)).items())
-            if parameter == "f_number":
-                return {"f_number": stop_rate(self._turned(at)) / stop_rate(self.camera_at(values).lens)}
+            if parameter in _RINGS:
+                of_distances, of_stop = ring_rates(self._turned(at), parameter)
+                per_f_number = ring_rates(self.camera_at(values).lens, "f_number")[1] if of_stop else 1.0
+                return {**of_distances, "f_number": of_stop / per_f_number} if of_stop else dict(of_distances)
             return {parameter: 1.0}
 
         return [direction(parameter) for parameter in self.parameters]

@@ -30,6 +30,7 @@ _Key = tuple[str, int, int, int]  # Variable.as_tuple
 
 # Numbers of a camera behind those of the lens, as the core orders them: _PictureGradient.
 _FILM, _POSE, _STOP, _OTHERS = 0, 6, 12, 13
+_STEP = 2e-3  # of differences by settings of rings, relative
 _PER_M, _PER_DEG = 1000.0, math.pi / 180
 
 #: Parameters that are one number of the camera: its index, and its factor.
@@ -46,26 +47,26 @@ _SINGLE = {
     "film_tilt_x_deg": (_FILM + 3, _PER_DEG),
     "film_tilt_y_deg": (_FILM + 4, _PER_DEG),
 }
-PARAMETERS = (*_SINGLE, "focus_distance_m", "f_number")
+PARAMETERS = (*_SINGLE, "focus_distance_m", "focal_length_mm", "f_number", "exposure_time_s")
 
 
 @dataclass(frozen=True)
 class _Numbers:
     """The numbers of a camera on which parameters depend.
 
-    variables: of the lens. directions: (P, N), derivatives of the numbers by the parameters.
+    variables: of the lens. directions: (P, N), derivatives of the numbers by the parameters. growth: (P,), derivatives
+    of the logarithm of the exposure by the parameters at fixed numbers.
     """
 
     variables: list[Variable]
     directions: Doubles
+    growth: Doubles
 
     @property
-    def moves_lens(self) -> NDArray[np.bool_]:
-        """(P,): True for parameters that change more than the camera's pose."""
+    def move_camera(self) -> bool:
+        """True if a parameter changes the camera's pose."""
         first = len(self.variables) + _POSE
-        others = np.delete(self.directions, np.s_[first : first + 6], axis=1)
-        changes: NDArray[np.bool_] = np.any(others != 0, axis=1)
-        return changes
+        return bool(np.any(self.directions[:, first : first + 6]))
 
 
 def render_gradient(
@@ -74,7 +75,6 @@ def render_gradient(
     parameters: Direction | Sequence[Direction],
     adjoint: ArrayLike | None = None,
     *,
-    filter: str = "tent",
     outline_spp: int | None = None,
     control_spp: int | None = None,
     settings: RenderSettings | None = None,
@@ -89,28 +89,27 @@ def render_gradient(
         against the axis, through the film's centre;
       "film_shift_right_mm", "film_shift_up_mm": Film.shift_mm; "film_tilt_x_deg", "film_tilt_y_deg": rotation of the
         film about its own axes;
-      "focus_distance_m", "f_number": settings of the lens's rings;
+      "focus_distance_m", "f_number": settings of the lens's rings; "focal_length_mm": setting of the zoom ring, as
+        the focal length of the lens focused at infinity; "exposure_time_s", unless something moves;
       a dict of such parameters and their rates: a parameter by which all of these change.
     adjoint: (H, W, 3), derivatives of a function of the picture's exposure (lux seconds) by its pixels; returns the
       derivatives of the function by the parameters, (P,). None: returns those of the picture, (P, H, W, 3).
-    filter: pixel filter of the picture, "tent" (two pixels wide) or "gaussian" (three pixels wide, standard deviation
-      half a pixel); the box, whose derivative has no finite variance, is refused.
     outline_spp: samples per pixel on the outline of the pupil, by default spp / 4. control_spp: samples per pixel, of
       other random numbers, of a first picture that serves as control variate for the pose, by default spp / 4; 0: none.
-    settings, changes: settings of rc.render; the samples on the film are those of rc.render with the same seed.
-      Derivatives take no noise goal, and no effect but dispersion. They trace no lights, so that the images of point
-      lights and suns themselves are missing.
+    settings, changes: settings of rc.render. Without settings, the filter of the pixels is the tent; the box, whose
+      derivative has no finite variance, is refused. Derivatives take no noise goal, and no effect but dispersion. They
+      trace no lights, so that the images of point lights and suns themselves are missing.
 
     The derivative is taken at fixed rays of the scene (docs/picture-derivatives.md). Raises InputError for what is not
     supported, by name.
     """
     if isinstance(parameters, (str, Variable, Mapping)):
         parameters = [parameters]
-    final = _final_settings(settings, changes)
-    numbers = _numbers_of(camera.lens, parameters)
-    of_picture = _core._PictureGradient(
-        scene, camera, final, filter, [variable.as_tuple() for variable in numbers.variables]
-    )
+    final = final_settings(settings, changes)
+    numbers = _numbers_of(camera, parameters)
+    of_picture = _core._PictureGradient(scene, camera, final, [variable.as_tuple() for variable in numbers.variables])
+    if numbers.growth.any() and of_picture.scene_moves:
+        raise InputError("the derivative by exposure_time_s needs a scene in which nothing moves during the exposure")
     spp = _spp_of(final)
     control_count = max(1, spp // 4) if control_spp is None else control_spp
     samples: dict[str, Any] = {
@@ -118,49 +117,24 @@ def render_gradient(
         "spp": spp,
         "outline_spp": max(1, spp // 4) if outline_spp is None else outline_spp,
     }
-    # The derivative of uniform light by the pose is 0. For all other parameters it is added, from the same samples, and
-    # cancels the control variate.
-    uses_control = control_count > 0 and not numbers.moves_lens.all()
+    uses_control = control_count > 0 and numbers.move_camera
     control = _control(of_picture, final.seed, control_count) if uses_control else None
-    even: dict[str, Any] = {**samples, "uniform": True}
+    picture = of_picture.picture(seed=final.seed, spp=spp).astype(float) if numbers.growth.any() else None
     if adjoint is not None:
         of_pixels = np.asarray(adjoint, np.float32)
         gradient: Doubles = numbers.directions @ of_picture.reverse(of_pixels, control, **samples)
-        if control is not None and numbers.moves_lens.any():
-            of_light = np.zeros_like(of_pixels)
-            of_light[..., 0] = (of_pixels * control).sum(-1)
-            by_even: Doubles = numbers.directions @ of_picture.reverse(of_light, None, **even)
-            gradient += np.where(numbers.moves_lens, by_even, 0.0)
+        if picture is not None:
+            gradient += numbers.growth * (of_pixels * picture).sum()
         return gradient
     pictures = of_picture.forward(numbers.directions, control, **samples)
-    if control is not None and numbers.moves_lens.any():
-        moving = numbers.moves_lens
-        pictures[moving] += control * of_picture.forward(numbers.directions[moving], None, **even)
+    if picture is not None:
+        pictures += np.multiply.outer(numbers.growth, picture)
     return pictures
 
 
-def render_filtered(
-    scene: Scene,
-    camera: Camera,
-    *,
-    filter: str = "tent",
-    settings: RenderSettings | None = None,
-    **changes: Unpack[_SettingsKwargs],
-) -> Floats:
-    """The picture that render_gradient differentiates: exposure in lux seconds, (H, W, 3), on the CPU.
-
-    filter: "tent" or "gaussian". The samples are those of rc.render with the same seed. Each counts for all pixels
-    whose filters it reaches; samples beyond the film's border count for the pixels at the border.
-    Raises InputError as render_gradient.
-    """
-    final = _final_settings(settings, changes)
-    of_picture = _core._PictureGradient(scene, camera, final, filter, [])
-    return of_picture.picture(seed=final.seed, spp=_spp_of(final))
-
-
-def _final_settings(settings: RenderSettings | None, changes: _SettingsKwargs) -> RenderSettings:
+def final_settings(settings: RenderSettings | None, changes: _SettingsKwargs) -> RenderSettings:
     """The settings of a derivative. Raises InputError."""
-    final = settings_of(settings, changes)
+    final = settings_of(settings, {"filter": "tent", **changes} if settings is None else changes)
     return final.with_(effects=()) if tuple(final.effects) == ("auto",) else final
 
 
@@ -178,8 +152,9 @@ def _control(of_picture: _core._PictureGradient, seed: int, spp: int) -> Floats:
     return np.where(even > 0, of_picture.picture(**samples) / np.where(even > 0, even, 1), 0)
 
 
-def _numbers_of(lens: Lens, parameters: Sequence[Direction]) -> _Numbers:
+def _numbers_of(camera: Camera, parameters: Sequence[Direction]) -> _Numbers:
     """Derivatives of the camera's numbers by the parameters. Raises InputError."""
+    lens = camera.lens
     if not parameters:
         raise InputError(f"parameters must have at least one Variable or name: {', '.join(PARAMETERS)}")
     single = [p for p in parameters if not isinstance(p, Mapping)]
@@ -188,10 +163,14 @@ def _numbers_of(lens: Lens, parameters: Sequence[Direction]) -> _Numbers:
     # Rates of variables of the lens, and of the numbers behind them, for each parameter.
     rows: list[tuple[dict[_Key, float], dict[int, float]]] = []
     variables: dict[_Key, Variable] = {}
-    for direction in parameters:
+    growth = np.zeros(len(parameters))
+    for position, direction in enumerate(parameters):
         of_lens: dict[_Key, float] = defaultdict(float)
         of_others: dict[int, float] = defaultdict(float)
         for parameter, factor in (direction if isinstance(direction, Mapping) else {direction: 1.0}).items():
+            if parameter == "exposure_time_s":
+                growth[position] += factor / camera.exposure_time_s
+                continue
             by_variable, by_other = _rates_of(lens, parameter)
             for variable, rate in by_variable.items():
                 variables.setdefault(variable.as_tuple(), variable)
@@ -206,7 +185,7 @@ def _numbers_of(lens: Lens, parameters: Sequence[Direction]) -> _Numbers:
             row[order[key]] = rate
         for index, rate in of_others.items():
             row[len(order) + index] = rate
-    return _Numbers(list(variables.values()), directions)
+    return _Numbers(list(variables.values()), directions, growth)
 
 
 def _rates_of(lens: Lens, parameter: Parameter) -> tuple[dict[Variable, float], dict[int, float]]:
@@ -217,38 +196,67 @@ def _rates_of(lens: Lens, parameter: Parameter) -> tuple[dict[Variable, float], 
     if parameter in _SINGLE:
         index, factor = _SINGLE[parameter]
         return {}, {index: factor}
-    if parameter == "focus_distance_m":
-        return focus_rates(lens), {}
-    if parameter == "f_number":
-        return {}, {_STOP: stop_rate(lens)}
+    if parameter in _RINGS:
+        of_distances, of_stop = ring_rates(lens, parameter)
+        return of_distances, {_STOP: of_stop}
     raise InputError(f"unknown parameter {parameter!r:.60}; expected a Variable or one of {', '.join(PARAMETERS)}")
 
 
 def _rate(function: Callable[[float], NDArray[np.float64]], at: float) -> NDArray[np.float64]:
     """Derivative of a smooth function by differences of fourth order: exact to about 1e-9 of itself."""
-    step = 2e-3 * at
+    step = _STEP * at
     near, far = function(at + step) - function(at - step), function(at + 2 * step) - function(at - 2 * step)
     return (8 * near - far) / (12 * step)
 
 
-def focus_rates(lens: Lens) -> dict[Variable, float]:
-    """Derivatives of the lens's distances by its focus distance in metres: those of the solution of the focusing
-    equation, by the implicit function theorem."""
-    if not math.isfinite(lens.focus_distance_m):
-        raise InputError("the derivative by focus_distance_m does not exist at infinity; focus the lens nearer")
+def ring_rates(lens: Lens, parameter: str) -> tuple[dict[Variable, float], float]:
+    """Derivatives of the lens's distances and of its diaphragm's radius (mm) by a parameter that is a ring.
+
+    Those of the solution of the ring's equation, by the implicit function theorem. Raises InputError.
+    """
+    set_ring, at = _RINGS[parameter](lens)
     last = len(lens.surfaces) - 1
 
-    def distances(focus_m: float) -> NDArray[np.float64]:
-        focused = lens.focused(focus_m)
-        return np.array([s.thickness_mm for s in focused.surfaces[:-1]] + [focused.film_distance_mm])
+    def numbers(setting: float) -> NDArray[np.float64]:
+        lens = set_ring(setting)
+        distances = [s.thickness_mm for s in lens.surfaces[:-1]]
+        return np.array([*distances, lens.film_distance_mm, lens.stop_semi_diameter_mm])
 
-    rates = _rate(distances, lens.focus_distance_m)
-    variables = [Variable.thickness(i) for i in range(last)] + [Variable.film_distance()]
-    return {v: float(rate) for v, rate in zip(variables, rates, strict=True) if rate != 0}
+    *rates, of_stop = _rate(numbers, at).tolist()
+    variables = [*map(Variable.thickness, range(last)), Variable.film_distance()]
+    return {v: rate for v, rate in zip(variables, rates, strict=True) if rate != 0}, of_stop
 
 
-def stop_rate(lens: Lens) -> float:
-    """Derivative of the diaphragm's radius by the f-number, mm."""
-    if lens.stop_semi_diameter_mm >= lens.surfaces[lens.stop_index].clear_semi_diameter_mm:
+def _focus_ring(lens: Lens) -> tuple[Callable[[float], Lens], float]:
+    """The function that focuses the lens, and its current focus distance in metres."""
+    if not math.isfinite(lens.focus_distance_m):
+        raise InputError("the derivative by focus_distance_m does not exist at infinity; focus the lens nearer")
+    return lens.focused, lens.focus_distance_m
+
+
+def _zoom_ring(lens: Lens) -> tuple[Callable[[float], Lens], float]:
+    """The function that zooms the lens, and its current focal length, focused at infinity, in mm."""
+    ends = lens.zoom_focal_lengths_mm
+    if not ends:
+        raise InputError("the derivative by focal_length_mm needs a zoom lens")
+    if _is_wide_open(lens):
+        raise InputError("the derivative by focal_length_mm needs a diaphragm that is stopped down")
+    focal_length = lens.focused(math.inf).first_order().effective_focal_length_mm
+    if not min(ends) < (1 - 2 * _STEP) * focal_length or not (1 + 2 * _STEP) * focal_length < max(ends):
+        raise InputError("the derivative by focal_length_mm does not exist at the ends of the zoom range")
+    return lens.zoomed, focal_length
+
+
+def _stop_ring(lens: Lens) -> tuple[Callable[[float], Lens], float]:
+    """The function that stops the lens down, and its current f-number."""
+    if _is_wide_open(lens):
         raise InputError("the derivative by f_number does not exist wide open; stop the lens down first")
-    return float(_rate(lambda n: np.array(lens.stopped_down(n).stop_semi_diameter_mm), lens.f_number))
+    return lens.stopped_down, lens.f_number
+
+
+def _is_wide_open(lens: Lens) -> bool:
+    return lens.stop_semi_diameter_mm >= lens.surfaces[lens.stop_index].clear_semi_diameter_mm
+
+
+#: Parameters that are rings of the lens.
+_RINGS = {"focus_distance_m": _focus_ring, "focal_length_mm": _zoom_ring, "f_number": _stop_ring}

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import Camera, InputError, RenderSettings, Scene
-from ..settings import settings_of
 from .camera_parameters import CameraParameters
-from .picture import Parameter
+from .picture import Parameter, final_settings
 
 if TYPE_CHECKING:
     import torch
@@ -24,7 +23,6 @@ def torch_render(
     cameras: Camera | Sequence[Camera],
     parameters: Mapping[Parameter, torch.Tensor],
     *,
-    filter: str = "tent",
     gradient_seed: int | None = None,
     gradient_spp: int | None = None,
     settings: RenderSettings | None = None,
@@ -33,8 +31,8 @@ def torch_render(
     """Pictures of cameras, lux seconds, differentiable by torch.autograd with respect to the cameras' parameters.
 
     cameras: one Camera, or B of them with films of one resolution. parameters: tensors of values by parameter, see
-    CameraParameters; each is one number for all cameras, or (B,). One Camera with tensors (B,) is B cameras. filter,
-    settings, changes: as for rc.render_gradient.
+    CameraParameters; each is one number for all cameras, or (B,). One Camera with tensors (B,) is B cameras. settings,
+    changes: as for rc.render_gradient.
     Returns (B, H, W, 3), float32; (H, W, 3) for one Camera with single numbers.
 
     Backward is one pass of rc.render_gradient per camera for all parameters. Its samples, gradient_spp per pixel (None:
@@ -62,7 +60,7 @@ def torch_render(
     if len({camera.film.resolution for camera in listed}) != 1:
         raise InputError("expected at least one camera, and films of one resolution")
     families = [CameraParameters(camera, tuple(parameters)) for camera in listed]
-    of_picture = settings_of(settings, changes)
+    of_picture = final_settings(settings, changes)
     seed = of_picture.seed
     # Any offset gives independent random numbers.
     second_seed = (seed + 0x85EBCA6B) % 2**32 if gradient_seed is None else gradient_seed
@@ -73,7 +71,7 @@ def torch_render(
         def forward(ctx: Any, values: torch.Tensor) -> torch.Tensor:
             ctx.save_for_backward(values)
             pictures = [
-                family.render(scene, row, filter=filter, settings=of_picture, seed=(seed + i) % 2**32)
+                family.render(scene, row, settings=of_picture, seed=(seed + i) % 2**32)
                 for i, (family, row) in enumerate(zip(families, values.numpy(), strict=True))
             ]
             return torch.from_numpy(np.stack(pictures))
@@ -84,9 +82,7 @@ def torch_render(
             (values,) = ctx.saved_tensors
             rows = zip(families, values.numpy(), adjoints.numpy(), strict=True)
             gradients = [
-                family.gradient(
-                    scene, row, adjoint, filter=filter, settings=of_gradient, seed=(second_seed + i) % 2**32
-                )
+                family.gradient(scene, row, adjoint, settings=of_gradient, seed=(second_seed + i) % 2**32)
                 for i, (family, row, adjoint) in enumerate(rows)
             ]
             return torch.from_numpy(np.stack(gradients))

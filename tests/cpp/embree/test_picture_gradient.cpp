@@ -46,8 +46,9 @@ Estimate estimate(const std::function<double(std::uint32_t)>& f) {
     return {sum / kSeeds, std::sqrt(squares / (kSeeds * (kSeeds - 1)))};
 }
 
-RenderSettings direct_light() {
+RenderSettings direct_light(PixelFilter filter = PixelFilter::tent) {
     RenderSettings settings;
+    settings.filter = filter;
     settings.effects = EffectChoice{};
     settings.max_bounces = 0;
     return settings;
@@ -153,8 +154,7 @@ Estimate difference(const Assembly& scene, const Camera& camera, const RenderSet
     Camera above = camera, below = camera;
     change(above, step);
     change(below, -step);
-    PictureGradient to(scene, above, settings, PixelFilter::tent, {}),
-        from(scene, below, settings, PixelFilter::tent, {});
+    PictureGradient to(scene, above, settings, {}), from(scene, below, settings, {});
     return estimate([&](std::uint32_t seed) {
         const GradientSamples samples{.seed = 1000 + seed, .spp = spp};
         return (product(adjoint, to.picture(samples, {})) - product(adjoint, from.picture(samples, {}))) / (2 * step);
@@ -172,7 +172,7 @@ Change translation(Vec3d axis) {
 
 TEST_CASE("a picture of even light does not depend on the camera's pose: interior and boundary cancel") {
     const Camera camera = corner_camera(4);
-    PictureGradient gradient(even_light(), camera, direct_light(), PixelFilter::tent, {});
+    PictureGradient gradient(even_light(), camera, direct_light(), {});
     const Gradients found(gradient, inner_pixels(camera), 128, 64);
     for (std::size_t number = kRight; number <= kRoll; ++number) {
         CAPTURE(number);
@@ -202,7 +202,7 @@ TEST_CASE("translation of a camera in front of a plane whose radiance is a linea
     material.vertex_emission = 1;
     scene.materials = {material};
     const Camera camera = corner_camera(2);
-    PictureGradient gradient(Assembly(scene), camera, direct_light(), PixelFilter::gaussian, {});
+    PictureGradient gradient(Assembly(scene), camera, direct_light(PixelFilter::gaussian), {});
     const std::vector<float> adjoint = inner_pixels(camera);
     const Gradients found(gradient, adjoint, 128, 64);
     const Estimate uniform = estimate([&](std::uint32_t seed) {
@@ -266,7 +266,7 @@ TEST_CASE("a knife edge in front of a thin lens, by pose, focus and stop") {
     const double by_right = rate([&](double h) { return exposure(h, kFilm0, kRadius); }, 1e-3),
                  by_film = rate([&](double h) { return exposure(0, kFilm0 + h, kRadius); }, 1e-2),
                  by_stop = rate([&](double h) { return exposure(0, kFilm0, kRadius + h); }, 1e-3);
-    PictureGradient gradient(assembly, camera, direct_light(), PixelFilter::tent, {{LensQuantity::film_distance, 0}});
+    PictureGradient gradient(assembly, camera, direct_light(), {{LensQuantity::film_distance, 0}});
     const Gradients found(gradient, adjoint, 256, 256);
     const auto check = [](const Estimate& value, double wanted) {
         CAPTURE(value.value);
@@ -289,7 +289,7 @@ TEST_CASE("derivatives of a picture with occlusion, defocus and vignetting equal
                                                  {LensQuantity::film_distance, 0},
                                                  {LensQuantity::decentre, 3, 0}};
     const std::size_t count = variables.size();
-    PictureGradient gradient(scene, camera, direct_light(), PixelFilter::tent, variables);
+    PictureGradient gradient(scene, camera, direct_light(), variables);
     const std::vector<float> adjoint = random_adjoint(camera);
     const Gradients found(gradient, adjoint, 128, 64);
     const auto surface = [](auto&& f) { return [f](Camera& c, double h) { f(c.lens.surfaces, h); }; };
@@ -336,8 +336,7 @@ TEST_CASE("derivatives of a picture with dispersion equal central differences") 
     const Assembly scene = occluded_stripes();
     RenderSettings settings = direct_light();
     settings.effects.dispersion = true;
-    PictureGradient gradient(scene, camera, settings, PixelFilter::tent,
-                             {{LensQuantity::curvature, 0}, {LensQuantity::film_distance, 0}});
+    PictureGradient gradient(scene, camera, settings, {{LensQuantity::curvature, 0}, {LensQuantity::film_distance, 0}});
     const std::vector<float> adjoint = random_adjoint(camera);
     const Gradients found(gradient, adjoint, 64, 32);
     const auto check = [&](std::size_t number, const Change& change, double step, double unit) {

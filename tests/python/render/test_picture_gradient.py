@@ -11,7 +11,7 @@ import pytest
 import realcam as rc
 from numpy.typing import NDArray
 
-from ..scenes import quad, scene_of, sky
+from ..scenes import quad, scene_of, shifted, sky
 
 SEEDS = 16
 ERRORS = 4.5
@@ -43,16 +43,19 @@ def estimate(of_seed: Callable[[int], NDArray[np.float64]]) -> tuple[NDArray[np.
     return values.mean(0), values.std(0, ddof=1) / np.sqrt(SEEDS)
 
 
+def film(scene: rc.Scene, camera: rc.Camera, spp: int, seed: int, filter: str = "tent") -> NDArray[np.float64]:
+    """Picture from samples that count for all pixels whose filters they reach."""
+    settings = rc.RenderSettings(filter=filter, effects=(), max_bounces=0)
+    return rc._core._PictureGradient(scene, camera, settings, []).picture(seed=seed, spp=spp).astype(float)
+
+
 def difference(
     scene: rc.Scene, below: rc.Camera, above: rc.Camera, step: float, *, spp: int = 128, filter: str = "tent"
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Central difference of sum(ADJOINT * picture) between cameras 2 steps apart."""
 
     def of_seed(seed: int) -> NDArray[np.float64]:
-        to, start = (
-            rc.render_filtered(scene, camera, filter=filter, spp=spp, seed=1000 + seed, max_bounces=0).astype(float)
-            for camera in (above, below)
-        )
+        to, start = (film(scene, camera, spp, 1000 + seed, filter) for camera in (above, below))
         return np.asarray(((to - start) * ADJOINT).sum() / (2 * step))
 
     return estimate(of_seed)
@@ -77,6 +80,9 @@ def changed(camera: rc.Camera, parameter: str, step: float) -> rc.Camera:
         return camera.replace(film=camera.film.replace(shift_mm=(shift[0], shift[1] + step)))
     if parameter == "focus_distance_m":
         return camera.replace(lens=lens.focused(lens.focus_distance_m + step))
+    if parameter == "focal_length_mm":
+        focal_length = lens.focused(np.inf).first_order().effective_focal_length_mm
+        return camera.replace(lens=lens.zoomed(focal_length + step))
     assert parameter == "f_number"
     return camera.replace(lens=lens.stopped_down(lens.f_number + step))
 
@@ -94,6 +100,7 @@ STEPS = {
     "film_shift_up_mm": 0.005,
     "focus_distance_m": 0.05,
     "f_number": 0.05,
+    "focal_length_mm": 0.2,
 }
 
 
@@ -117,12 +124,32 @@ def test_rings_pose_and_film_equal_differences() -> None:
     check_against_differences(stripes(), corner_camera(), "tent", 48, parameters)
 
 
+def zoom_camera() -> rc.Camera:
+    """A few pixels of a zoom lens, off its axis."""
+    lens = rc.Lens.load("zoom-70-200mm").zoomed(90.0).focused(3.0).stopped_down(4.0)
+    return rc.Camera(lens, film=rc.Film(0.8, 0.8, (8, 8), shift_mm=(10, 6)), exposure_time_s=1.0)
+
+
+def test_the_zoom_ring_equals_differences() -> None:
+    check_against_differences(stripes(occluder=False), zoom_camera(), "tent", 64, ["focal_length_mm"])
+
+
+def test_exposure_is_proportional_to_its_time() -> None:
+    scene, camera = stripes(), corner_camera()
+    wanted = film(scene, camera, 16, 0)  # in one second
+    pictures = rc.render_gradient(scene, camera, ["exposure_time_s", "f_number"], spp=16, max_bounces=0)
+    assert np.allclose(pictures[0], wanted, rtol=1e-6)
+    gradient = rc.render_gradient(scene, camera, "exposure_time_s", ADJOINT, spp=16, max_bounces=0)
+    assert gradient[0] == pytest.approx((ADJOINT * wanted).sum(), rel=1e-5)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("filter", ["tent", "gaussian"])
 @pytest.mark.parametrize("f_number", [2.2, 4.0])
 @pytest.mark.parametrize("occluder", [False, True])
 def test_all_parameters_equal_differences(filter: str, f_number: float, occluder: bool) -> None:
-    check_against_differences(stripes(occluder), corner_camera(f_number), filter, 512, list(STEPS))
+    parameters = [parameter for parameter in STEPS if parameter != "focal_length_mm"]
+    check_against_differences(stripes(occluder), corner_camera(f_number), filter, 512, parameters)
 
 
 def test_control_variate_changes_the_noise_but_not_the_mean() -> None:
@@ -176,39 +203,18 @@ def test_even_light_has_none_at_a_fisheyes_border() -> None:
         lambda seed: rc.render_gradient(sky(), camera, parameters, np.ones((8, 8, 3)), spp=64, seed=seed, control_spp=0)
     )
     assert np.all(np.abs(found) < ERRORS * error)
-    boundary = rc._core._PictureGradient(sky(), camera, rc.RenderSettings(effects=()), "tent", []).reverse(
+    boundary = rc._core._PictureGradient(sky(), camera, rc.RenderSettings(effects=(), filter="tent"), []).reverse(
         np.ones((8, 8, 3)), None, seed=0, spp=1, outline_spp=64, terms="boundary"
     )
     # The boundary of one of the two parameters alone is many standard errors: the test can fail.
     assert abs(1000 * boundary[8]) > 20 * error[1]
 
 
-def test_filtered_picture_is_the_tent_of_a_finer_picture() -> None:
-    scene, camera = stripes(), corner_camera()
-    # 16 x 16 fine pixels per pixel, on a film that is one pixel wider on each side.
-    fine_film = camera.film.replace(width_mm=1.0, height_mm=1.0, resolution=(160, 160))
-    offsets = (np.arange(32) + 0.5) / 16 - 1
-    tent = (1 - np.abs(offsets)) / 16
-
-    def coarse(seed: int) -> NDArray[np.float64]:
-        fine = rc.render(
-            scene, camera.replace(film=fine_film), spp=4, seed=seed, max_bounces=0, effects=()
-        ).pixels.astype(float)
-        rows = np.stack([np.tensordot(tent, fine[16 * i + 8 : 16 * i + 40], 1) for i in range(8)])
-        return np.stack([np.tensordot(tent, rows[:, 16 * i + 8 : 16 * i + 40], (0, 1)) for i in range(8)], 1)
-
-    wanted, wanted_error = estimate(coarse)
-    found, error = estimate(lambda seed: rc.render_filtered(scene, camera, spp=128, seed=seed, max_bounces=0))
-    # The midpoints of 32 fine pixels integrate the tent to 1e-3. Pixels behind the edge are black.
-    assert np.all(np.abs(found - wanted) <= ERRORS * np.hypot(error, wanted_error) + 1e-3 * wanted)
-    assert np.count_nonzero(wanted) > 50
-
-
 @pytest.mark.parametrize(
     ("keywords", "message"),
     [
         ({"filter": "box"}, "need a smooth pixel filter"),
-        ({"filter": "lanczos"}, 'unknown filter "lanczos"; expected box, tent or gaussian'),
+        ({"filter": "lanczos"}, 'filter must be box, tent or gaussian; it is "lanczos"'),
         ({"effects": "ghosts"}, "do not support the effect ghosts"),
         ({"spp": "auto"}, "take no noise goal"),
         ({"parameters": "zoom"}, "unknown parameter 'zoom'"),
@@ -231,3 +237,20 @@ def test_rings_at_their_ends_are_refused() -> None:
         rc.render_gradient(sky(), wide_open, "f_number", ADJOINT)
     with pytest.raises(rc.InputError, match="does not exist at infinity"):
         rc.render_gradient(sky(), wide_open, "focus_distance_m", ADJOINT)
+    with pytest.raises(rc.InputError, match="needs a zoom lens"):
+        rc.render_gradient(sky(), camera, "focal_length_mm", ADJOINT)
+    zoom = zoom_camera()
+    with pytest.raises(rc.InputError, match="at the ends of the zoom range"):
+        shortest = zoom.lens.zoomed(0).stopped_down(8)
+        rc.render_gradient(sky(), zoom.replace(lens=shortest), "focal_length_mm", ADJOINT)
+
+
+def test_exposure_time_of_a_moving_scene_is_refused() -> None:
+    still = scene_of(quad((0, 0, -2), 1, emission=1.0))
+    moving = (
+        sky()
+        .with_instance(still, np.eye(4), name="quad")
+        .moved("quad", [shifted(), shifted(x=0.1)], times_s=[0.0, 1.0])
+    )
+    with pytest.raises(rc.InputError, match="in which nothing moves"):
+        rc.render_gradient(moving, corner_camera(), "exposure_time_s", ADJOINT)

@@ -22,7 +22,7 @@ OTHERS: list[dict[str, Any]] = [
     {"spp": "auto"},
     {"spp": "auto", "noise": 0.01, "seconds": 2.5},
     {"spp": "auto", "noise_codes": 0.3, "max_spp": 99},
-    {"transport": "whitted", "clamp_cd_m2": 0.1, "pupil_sampling": "exit_pupil"},
+    {"transport": "whitted", "clamp_cd_m2": 0.1, "pupil_sampling": "exit_pupil", "filter": "gaussian"},
     {"layers": ["normal", "depth"]},
     {"layers": "all", "effects": None},
     {"effects": ("auto", "ghosts=1e-8", "-motion_blur"), "quality": "draft"},

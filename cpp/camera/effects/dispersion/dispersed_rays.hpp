@@ -66,6 +66,12 @@ REALCAM_INLINE void share(const CameraView& camera, const SampleBlock<N>& block,
     wavelengths.away[step - 1][lane] = pixel.down * sharing.stride + pixel.right;
 }
 
+/// True if samples count at further wavelengths than their own. The density of samples is that of other wavelengths
+/// only if it is uniform: with a filter other than the box, it depends on the film point.
+REALCAM_INLINE bool shares_wavelengths(const CameraView& camera) {
+    return camera.dispersion.cell_count > 1 && camera.filter == PixelFilter::box;
+}
+
 /// Samples a wavelength for each sample, stratified over the samples of its pixel. At first, a sample counts for this
 /// wavelength alone.
 template <int N>
