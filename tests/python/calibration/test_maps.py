@@ -45,6 +45,48 @@ def test_maps_are_cameras(tmp_path: Path, name: str) -> None:
     assert np.array_equal(again.camera_model.positions, found.camera_model.positions, equal_nan=True)
 
 
+@pytest.mark.parametrize(
+    ("camera", "largest_px"),
+    [
+        # Cubic splines of a direction that changes by 1/40 a pixel: their error is below 1/40^4 of its fourth
+        # derivative, which near 90 degrees is of the order of 1 in stereographic coordinates; 32-bit positions cost
+        # more, 1e-7 of the tangent at 45 degrees.
+        (rc.Calibration.opencv_fisheye([[40, 0, 69.5], [0, 40, 59.5], [0, 0, 1]], [0, 0, 0, 0], (140, 120)), 1e-3),
+        # The angle goes like a square root of the distance to the fold, which no spline over pixels follows.
+        (rc.Calibration.opencv([[150, 0, 159.5], [0, 150, 119.5], [0, 0, 1]], [-0.35, 0, 0, 0], (320, 240)), 0.1),
+    ],
+    ids=["90 degrees", "fold"],
+)
+def test_a_redistorting_map_is_a_camera_to_its_end(tmp_path: Path, camera: rc.Calibration, largest_px: float) -> None:
+    camera.save(tmp_path / "redistort.exr")
+    found = rc.Calibration.load(tmp_path / "redistort.exr")
+    pixels = np.random.default_rng(3).random((4000, 2)) * camera.size
+    directions, _ = camera.ray(pixels)
+    seen = np.isfinite(directions[:, 0])
+    assert 0.2 < seen.mean() < 0.95  # the picture shows the end all around
+    projected, status = found.project(directions[seen])
+    # Points less than two pixels from the end may lie between pixels of which one has no ray, and are then refused.
+    refused_px = 2 * 2 * np.pi * np.sqrt(seen.mean() * np.prod(camera.size) / np.pi)
+    assert (status == rc.PointStatus.NO_PROJECTION).sum() < refused_px / np.prod(camera.size) * len(pixels)
+    assert np.nanmax(np.linalg.norm(projected - pixels[seen], axis=1)) < largest_px
+
+
+def test_pixels_without_a_ray_are_marked_in_a_redistorting_map(tmp_path: Path) -> None:
+    """(-1, -1) of an ST map lies beside every picture, and cv2.remap shows its border value at NaN."""
+    camera = rc.Calibration.opencv_fisheye([[40, 0, 69.5], [0, 40, 59.5], [0, 0, 1]], [0, 0, 0, 0], (140, 120))
+    camera.save(tmp_path / "redistort.exr")
+    camera.save(tmp_path / "remap.npz")
+    values, tables = channels(tmp_path / "redistort.exr"), np.load(tmp_path / "remap.npz")
+    rows, columns = np.mgrid[0:120, 0:140]
+    is_beyond = np.hypot(columns - 69.5, rows - 59.5) > 40 * np.pi / 2
+    assert (values[is_beyond][:, :2] == -1).all()
+    assert np.isnan(tables["redistort_map_x"][is_beyond]).all()
+    # The distance from the centre of a pixel's direction in the pinhole camera's picture: f tan(r / f).
+    distance = np.hypot(30 - 69.5, 20 - 59.5)
+    expected = 69.5 + (30 - 69.5) * 40 * np.tan(distance / 40) / distance
+    assert tables["redistort_map_x"][20, 30] == pytest.approx(expected, rel=1e-6)
+
+
 def test_a_map_of_another_program_needs_its_pinhole_camera(tmp_path: Path) -> None:
     x, y = np.meshgrid(np.arange(96.0), np.arange(64.0))
     np.savez(tmp_path / "remap.npz", map_x=x.astype(np.float32), map_y=y.astype(np.float32))

@@ -47,9 +47,10 @@ def _map(camera: StatedCamera, is_redistorting: bool) -> Array:
 def _model(document: Document, positions: Array, is_redistorting: bool, K: Array | None) -> MapModel:
     if K is None:
         document.fail("states no pinhole camera; expected camera_matrix=K of the undistorted picture")
-    if not np.isfinite(positions).any():
+    model = MapModel(positions, is_redistorting, K, np.eye(3))
+    if model.is_empty:
         document.fail("holds no position inside a picture")
-    return MapModel(positions, is_redistorting, K, np.eye(3))
+    return model
 
 
 def _st_cameras(kind: _Kind, document: Document, options: Options) -> Cameras:
