@@ -3614,8 +3614,8 @@ class _PictureGradient:
         """
         Returns the derivatives of sum(adjoint * picture) by all numbers of the camera, (N,).
         adjoint: (H, W, 3). control: control variate of the radiance, (H, W, 3), or None; derivatives by the pose are then those
-        of picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests. pairs: False: all samples on
-        the film are independent, for comparison.
+        of picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests.
+        pairs: False: all samples on the film are independent, for comparison.
         """
     @property
     def number_count(self) -> int:
