@@ -1,4 +1,4 @@
-"""Where was the camera, and how was it set? Finds pose, focus and f-number of a picture of a known scene.
+"""Finds pose, focus and f-number of a camera from a picture of a known scene.
 
     python examples/camera_from_picture.py [--starts 20]
 
