@@ -1,4 +1,4 @@
-"""Which copy is this? Finds the spacings, tilts and decentres of a manufactured lens from pictures of a chart.
+"""Finds the spacings, tilts and decentres of a manufactured copy of a lens from pictures of a chart.
 
     python examples/which_copy.py [--copies 2] [--grade precision]
 
