@@ -2671,11 +2671,14 @@ class ProjectionStatus(IntEnum):
     BEHIND = 3
     BAD_INPUT = 4
 
-def traced_chief_rays(camera: Camera, pixels: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def traced_chief_rays(
+    camera: Camera, pixels: ArrayLike, lens_rays: tuple[ArrayLike, ArrayLike] | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """
     Returns (origins_m, directions), (N, 3) float64, scene, of the chief rays of pixels (N, 2) in front of the
     camera: each is traced through the lens, or is that of the camera model, and moved as rendering moves it. Origins lie on
     the ray near the centre of projection. NaN for pixels without a chief ray. For a camera that does not move.
+    lens_rays: the result for these pixels of the camera without its geometry; None: traced here.
     """
 
 @final
