@@ -37,7 +37,8 @@ Rays = tuple[Array, Array]  # origins and directions, (N, 3)
 
 def lens_chief_rays(calibration: CalibratedPicture, camera: Camera) -> Rays:
     """Traces the chief rays of a camera's lens at the points of geometry_error, in the camera's axes."""
-    return traced_chief_rays(_still(camera).replace(geometry=None), _pixels(calibration))
+    lens = Camera(camera.ray_pairs or camera.lens, film=camera.film, model=camera.model)
+    return traced_chief_rays(lens, _pixels(calibration))
 
 
 def geometry_error(calibration: CalibratedPicture, camera: Camera, lens_rays: Rays | None = None) -> GeometryError:
@@ -51,7 +52,7 @@ def geometry_error(calibration: CalibratedPicture, camera: Camera, lens_rays: Ra
             f"expected a camera of {calibration.size[0]} x {calibration.size[1]} pixels; found "
             f"{camera.film.resolution[0]} x {camera.film.resolution[1]}"
         )
-    still = _still(camera)
+    still = camera.replace(position=(0, 0, 0), look_at=(0, 0, -1), up=(0, 1, 0))
     pixels, size = _pixels(calibration), np.array(calibration.size, dtype=float)
     expected, status = calibration.ray(pixels)
     lens_origins, lens_directions = lens_rays or lens_chief_rays(calibration, camera)
@@ -74,14 +75,10 @@ def geometry_error(calibration: CalibratedPicture, camera: Camera, lens_rays: Ra
     )
 
 
-def _still(camera: Camera) -> Camera:
-    """Returns the camera in a pose in which the axes of the scene are its own."""
-    return camera.replace(position=(0, 0, 0), look_at=(0, 0, -1), up=(0, 1, 0))
-
-
 def _pixels(calibration: CalibratedPicture) -> Array:
     """Returns the pixels (N, 2) at which the geometry is measured."""
-    return np.random.default_rng(20130712).random((_POINTS, 2)) * np.array(calibration.size, dtype=float)
+    pixels: Array = np.random.default_rng(20130712).random((_POINTS, 2)) * calibration.size
+    return pixels
 
 
 def _errors(
