@@ -22,8 +22,8 @@ GROUPS = {
         "with_better_glasses",
     ),
     "Derivatives": (
-        "CameraParameters", "Gradient", "PictureFit", "RayDerivatives", "RayGradient", "backpropagate_rays", "fit_pictures",
-        "ray_derivatives", "render_filtered", "render_gradient", "torch_render",
+        "CameraParameters", "Gradient", "PictureFit", "RayDerivatives", "RayGradient", "backpropagate_rays",
+        "fit_pictures", "ray_derivatives", "render_filtered", "render_gradient", "torch_render",
     ),
     "Tolerances": (
         "Tolerances",
