@@ -121,8 +121,10 @@ class CameraParameters:
             # The rings' scales are those of the lens of `camera`, whose surfaces are not changed.
             if parameter in _RINGS:
                 of_distances, of_stop = ring_rates(self._turned(at), parameter)
-                per_f_number = ring_rates(self.camera_at(values).lens, "f_number")[1] if of_stop else 1.0
-                return {**of_distances, "f_number": of_stop / per_f_number} if of_stop else dict(of_distances)
+                rates: dict[Parameter, float] = dict(of_distances.items())
+                if of_stop:
+                    rates["f_number"] = of_stop / ring_rates(self.camera_at(values).lens, "f_number")[1]
+                return rates
             return {parameter: 1.0}
 
         return [direction(parameter) for parameter in self.parameters]
