@@ -10,64 +10,16 @@
 #include <utility>
 
 #include "../render/gradients/filtered_film.hpp"
-#include "../scene/scene_checks.hpp"
 #include "gradient_row.hpp"
 #include "lens_rays.hpp"
 
 namespace realcam {
 
-namespace {
-
-/// Throws InputError for a feature of the camera or the settings that derivatives do not support.
-void check_supported(const Camera& camera, const RenderSettings& settings, PixelFilter filter) {
-    const auto refuse = [](const std::string& what) { throw InputError("derivatives of pictures " + what); };
-    if (filter == PixelFilter::box)
-        refuse("need a smooth pixel filter, tent or gaussian; that of the box is a delta function at its edges");
-    if (camera.model != CameraModel::full_lens) refuse("need the camera model full");
-    if (camera.geometry) refuse("do not support calibrated cameras");
-    if (camera.moves()) refuse("do not support cameras that move during the exposure");
-    for (const EffectInfo& effect : kEffects)
-        if (settings.effects.*effect.member && !effect.is_on() && effect.member != &EffectChoice::dispersion)
-            refuse(std::string("do not support the effect ") + effect.name);
-    if (settings.pupil_sampling != PupilSampling::outline) refuse("need the pupil sampling outline");
-}
-
-/// Flattens derivatives in the order of PictureGradient.
-void append_numbers(const CameraDerivatives& from, double by_stop, std::vector<double>& to) {
-    to.insert(to.end(), from.by_variable.begin(), from.by_variable.end());
-    to.insert(to.end(), from.by_film.begin(), from.by_film.end());
-    to.insert(to.end(), from.by_pose.begin(), from.by_pose.end());
-    to.push_back(by_stop);
-}
-
-}  // namespace
-
-Camera PictureGradient::extended(Camera camera, int margin) {
-    Film& film = camera.film;
-    film.width_mm *= static_cast<double>(film.width + 2 * margin) / film.width;
-    film.height_mm *= static_cast<double>(film.height + 2 * margin) / film.height;
-    film.width += 2 * margin;
-    film.height += 2 * margin;
-    return camera;
-}
-
 PictureGradient::PictureGradient(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                                  PixelFilter filter, std::vector<LensVariable> variables)
-    : camera_((validate(camera), check_supported(camera, settings, filter), camera)),
-      settings_(settings),
-      filter_(filter),
-      margin_(static_cast<int>(std::ceil(filter_radius(filter) - 0.5f))),
-      path_(camera.lens, camera.lens.wavelength_nm, std::move(variables)),
-      outline_(camera.lens, camera.lens.wavelength_nm),
-      setup_(std::make_shared<const CameraSetup>(extended(camera, margin_), fast_pupil_tracer(), nullptr,
-                                                 settings.lens_effects())),
-      film_index_(camera.lens.indices(camera.lens.wavelength_nm).back()) {
-    SceneChecks().check(scene);
-    if (scene.moves() && camera.shutter.readout_time_s > 0)
-        throw InputError("derivatives of pictures do not support rolling shutters in scenes that move");
-    embree_ = std::make_unique<const EmbreeParts>(scene, camera);
-    view_ = setup_->view(embree_->scene.placed().origin_m(), embree_->scene.placed().moves());
-}
+    : CameraGradient(scene, camera, settings, filter, std::move(variables), fast_pupil_tracer()),
+      embree_(std::make_unique<const EmbreeParts>(scene, camera)),
+      view_(setup_->view(embree_->scene.placed().origin_m(), embree_->scene.placed().moves())) {}
 
 PictureGradient::~PictureGradient() = default;
 
@@ -111,7 +63,7 @@ public:
 private:
     /// Number of rows of pixels that the samples of a row count for: those within two pixels.
     static constexpr std::size_t kRowCount = 5;
-    int first_row(int row) const { return row - of_.margin_ - 2; }
+    int first_row(int row) const { return row - of_.film_.margin - 2; }
     std::size_t row_size() const { return 3 * static_cast<std::size_t>(of_.width()); }
 
     const PictureGradient& of_;
@@ -135,10 +87,6 @@ void PictureGradient::run(const Pass& pass, const KeepGoing& keep_going) {
             });
         });
     }
-}
-
-double PictureGradient::exposure_per_sample(int spp) const {
-    return camera_.exposure_time_s * settings_.filter_transmittance() / spp;
 }
 
 WavelengthsInDouble PictureGradient::wavelengths(const float* variable) const {
@@ -168,19 +116,6 @@ void PictureGradient::trace_outline(OutlineBlock& block, const std::array<double
     path_.trace(block.rays, sums, surfaces, tangents, if_dispersed(many));
 }
 
-Vec3d PictureGradient::film_origin(Vec3f origin) const {
-    return {static_cast<double>(origin.x), static_cast<double>(origin.y), camera_.lens.film_distance};
-}
-
-Vec3d PictureGradient::film_direction(Vec3f direction) const {
-    const double l = static_cast<double>(direction.x), m = static_cast<double>(direction.y);
-    return {l, m, -std::sqrt(film_index_ * film_index_ - l * l - m * m)};
-}
-
-Vec2d PictureGradient::pixels_per_mm() const {
-    return {-camera_.film.width / camera_.film.width_mm, camera_.film.height / camera_.film.height_mm};
-}
-
 std::vector<float> PictureGradient::picture(const GradientSamples& samples, const KeepGoing& keep_going) {
     FilmRows film(*this, 1);
     const double scale = exposure_per_sample(samples.spp);
@@ -198,15 +133,17 @@ std::vector<float> PictureGradient::picture(const GradientSamples& samples, cons
     return film.sum();
 }
 
+/// Sums of tangents in reverse mode, with the film samples that wait to be traced.
+struct PictureGradient::ReverseSums {
+    AdjointFilm film;
+    TangentPath::Sums sums;
+    RayBlock block;
+    double by_stop = 0;
+};
+
 std::vector<double> PictureGradient::reverse(const float* adjoint, const float* control, const GradientSamples& samples,
                                              const KeepGoing& keep_going) {
-    std::vector<float> of_control;
-    const auto pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
-    if (control)
-        for (std::size_t i = 0; i < 3 * pixels; i += 3)
-            of_control.push_back(adjoint[i] * control[i] + adjoint[i + 1] * control[i + 1] +
-                                 adjoint[i + 2] * control[i + 2]);
-    const AdjointFilm film{filter_, width(), height(), adjoint, control ? of_control.data() : nullptr};
+    const std::vector<float> of_control = adjoint_of_control(adjoint, control);
     // Sums of the rows, which are added in order, make the result independent of the number of threads.
     std::vector<std::vector<double>> rows(static_cast<std::size_t>(view_.height));
     std::vector<std::int64_t> unexplained(rows.size()), edges(rows.size());
@@ -215,37 +152,43 @@ std::vector<double> PictureGradient::reverse(const float* adjoint, const float* 
         [&](int row_index) {
             const auto at = static_cast<std::size_t>(row_index);
             Row row(*this, samples, row_index);
-            TangentPath::Sums sums(path_);
-            RayBlock block;
-            const auto trace_block = [&] {
-                trace_film(block, sums);
-                block.count = 0;
-            };
+            std::vector<ReverseSums> all;
+            all.push_back({{filter_, width(), height(), adjoint, nullptr}, TangentPath::Sums(path_), {}});
+            if (control)
+                all.push_back({{filter_, width(), height(), adjoint, of_control.data()}, TangentPath::Sums(path_), {}});
             const double scale = exposure_per_sample(samples.spp);
             if (samples.interior)
                 row.for_film_samples([&](int lane, const SampleLight& sample, const FilmSamples<kLanes>& from) {
-                    const Vec3f slopes = film(sample.pixel, sample.light, sample.weight);
-                    if (slopes.y == 0 && slopes.z == 0) return;
-                    block.add(sample, film_origin(from.origin[lane]), film_direction(from.direction[lane]));
-                    block.set_tangent(block.count - 1, {scale * per_mm.x * static_cast<double>(slopes.y),
-                                                        scale * per_mm.y * static_cast<double>(slopes.z)});
-                    if (block.count == kRays) trace_block();
+                    for (ReverseSums& part : all) {
+                        const Vec3f slopes = part.film(sample.pixel, sample.light, sample.weight);
+                        if (slopes.y == 0 && slopes.z == 0) continue;
+                        RayBlock& block = part.block;
+                        block.add(sample, outline_.view(), from.origin[lane], from.direction[lane]);
+                        block.set_tangent(block.count - 1, {scale * per_mm.x * static_cast<double>(slopes.y),
+                                                            scale * per_mm.y * static_cast<double>(slopes.z)});
+                        if (block.count == kRays) trace_film(block, part.sums), block.count = 0;
+                    }
                 });
-            if (block.count > 0) trace_block();
-            double by_stop = 0;
+            for (ReverseSums& part : all)
+                if (part.block.count > 0) trace_film(part.block, part.sums);
             const double outline_scale = exposure_per_sample(samples.outline_spp);
             if (samples.boundary)
-                row.for_outline_samples([&](OutlineBlock& outline) {
-                    std::array<double, kRays> weights{};
-                    for (std::size_t i = 0; i < static_cast<std::size_t>(outline.count); ++i) {
-                        const SampleLight& light = outline.lights[i];
-                        const Vec3f value = film(light.pixel, light.light, light.weight);
-                        weights[i] = outline_scale * static_cast<double>(value.x);
-                        by_stop += weights[i] * outline.points[i]->stop_rate;
+                row.for_outline_samples([&](const OutlineBlock& outline) {
+                    for (ReverseSums& part : all) {
+                        std::array<double, kRays> weights{};
+                        for (std::size_t i = 0; i < static_cast<std::size_t>(outline.count); ++i) {
+                            const SampleLight& light = outline.lights[i];
+                            const Vec3f value = part.film(light.pixel, light.light, light.weight);
+                            weights[i] = outline_scale * static_cast<double>(value.x);
+                            part.by_stop += weights[i] * outline.points[i]->stop_rate;
+                        }
+                        OutlineBlock traced = outline;
+                        trace_outline(traced, weights, part.sums);
                     }
-                    trace_outline(outline, weights, sums);
                 });
-            append_numbers(path_.derivatives(sums), by_stop, rows[at]);
+            CameraDerivatives derivatives = path_.derivatives(all.front().sums);
+            if (control) derivatives.by_pose = path_.derivatives(all.back().sums).by_pose;
+            rows[at] = by_all_numbers(derivatives, all.front().by_stop);
             unexplained[at] = row.unexplained, edges[at] = row.edge_count;
         },
         keep_going);
@@ -257,22 +200,38 @@ std::vector<double> PictureGradient::reverse(const float* adjoint, const float* 
     return gradient;
 }
 
+/// Direction in the space of the camera's numbers, in forward mode.
+struct PictureGradient::Direction {
+    TangentPath::Coefficients all, pose;  ///< of all numbers, and of those of the pose alone
+    double stop_rate;
+};
+
+/// Motions of the samples of a block along a direction.
+struct PictureGradient::Motions {
+    std::array<double, kRays> all{}, pose{};
+
+    Motions(const Direction& along, const TangentPath::Sums& sums) {
+        TangentPath::add_along(along.all, sums, all);
+        TangentPath::add_along(along.pose, sums, pose);
+    }
+};
+
 std::vector<float> PictureGradient::forward(const std::vector<double>& directions, const float* control,
                                             const GradientSamples& samples, const KeepGoing& keep_going) {
     const std::size_t numbers = number_count(), count = directions.size() / numbers;
     FilmRows film(*this, count);
     const Vec2d per_mm = pixels_per_mm();
-    std::vector<TangentPath::Coefficients> along;
-    std::vector<double> stop_rates;
+    std::vector<Direction> along;
     for (std::size_t k = 0; k < count; ++k) {
         const double* direction = directions.data() + k * numbers;
         const double* others = direction + path_.variable_count();
         CameraDerivatives rates;
+        rates.by_variable.assign(path_.variable_count(), 0);
+        std::copy(others + 6, others + 12, rates.by_pose.begin());
+        const TangentPath::Coefficients of_pose = path_.coefficients(rates);
         rates.by_variable.assign(direction, others);
         std::copy(others, others + 6, rates.by_film.begin());
-        std::copy(others + 6, others + 12, rates.by_pose.begin());
-        along.push_back(path_.coefficients(rates));
-        stop_rates.push_back(others[12]);
+        along.push_back({path_.coefficients(rates), of_pose, others[12]});
     }
     run(
         [&](int row_index) {
@@ -280,15 +239,15 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
             auto& rows = film.rows_of(row_index);
             TangentPath::Sums sums(path_);
             RayBlock block;
-            // Adds light times a factor of each pixel's filter to the derivative pictures.
+            // Adds light to the derivative picture k. `factor`: factor of each pixel's light, and of its control
+            // variate.
             const auto add = [&](const SampleLight& sample, std::size_t k, auto&& factor) {
                 for_filtered_pixels(filter_, width(), height(), sample.pixel, [&](int pixel, float value, Vec2f slope) {
-                    Color light = sample.light;
-                    if (control) {
-                        const float* c = control + 3 * pixel;
-                        light = light - sample.weight * Color{c[0], c[1], c[2]};
-                    }
-                    film.add(rows, row_index, k, pixel, factor(static_cast<double>(value), slope), light);
+                    const auto [of_light, of_control] = factor(static_cast<double>(value), slope);
+                    film.add(rows, row_index, k, pixel, of_light, sample.light);
+                    if (!control) return;
+                    const float* c = control + 3 * pixel;
+                    film.add(rows, row_index, k, pixel, -of_control, sample.weight * Color{c[0], c[1], c[2]});
                 });
             };
             const double scale = exposure_per_sample(samples.spp);
@@ -298,23 +257,24 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
                 sums.clear();
                 trace_film(block, sums);
                 // Motions of the film points along x and y, for each direction.
-                std::vector<std::array<double, kRays>> x(count), y(count);
-                for (std::size_t k = 0; k < count; ++k) TangentPath::add_along(along[k], sums, x[k]);
+                std::vector<Motions> x, y;
+                for (const Direction& direction : along) x.emplace_back(direction, sums);
                 sums.clear();
                 trace_film(other, sums);
-                for (std::size_t k = 0; k < count; ++k) {
-                    TangentPath::add_along(along[k], sums, y[k]);
+                for (const Direction& direction : along) y.emplace_back(direction, sums);
+                for (std::size_t k = 0; k < count; ++k)
                     for (std::size_t i = 0; i < static_cast<std::size_t>(block.count); ++i)
                         add(block.lights[i], k, [&](double, Vec2f slope) {
-                            return scale * (per_mm.x * x[k][i] * static_cast<double>(slope.x) +
-                                            per_mm.y * y[k][i] * static_cast<double>(slope.y));
+                            const double by_x = scale * per_mm.x * static_cast<double>(slope.x),
+                                         by_y = scale * per_mm.y * static_cast<double>(slope.y);
+                            return std::pair(by_x * x[k].all[i] + by_y * y[k].all[i],
+                                             by_x * x[k].pose[i] + by_y * y[k].pose[i]);
                         });
-                }
                 block.count = 0;
             };
             if (samples.interior)
                 row.for_film_samples([&](int lane, const SampleLight& sample, const FilmSamples<kLanes>& from) {
-                    block.add(sample, film_origin(from.origin[lane]), film_direction(from.direction[lane]));
+                    block.add(sample, outline_.view(), from.origin[lane], from.direction[lane]);
                     if (block.count == kRays) trace_block();
                 });
             if (block.count > 0) trace_block();
@@ -326,12 +286,12 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
                     sums.clear();
                     trace_outline(outline, weights, sums);
                     for (std::size_t k = 0; k < count; ++k) {
-                        std::array<double, kRays> speeds{};
-                        TangentPath::add_along(along[k], sums, speeds);
+                        const Motions speeds(along[k], sums);
                         for (std::size_t i = 0; i < static_cast<std::size_t>(outline.count); ++i) {
-                            const double speed = speeds[i] + stop_rates[k] * outline.points[i]->stop_rate;
-                            add(outline.lights[i], k,
-                                [&](double value, Vec2f) { return outline_scale * speed * value; });
+                            const double speed = speeds.all[i] + along[k].stop_rate * outline.points[i]->stop_rate;
+                            add(outline.lights[i], k, [&](double value, Vec2f) {
+                                return std::pair(outline_scale * speed * value, outline_scale * speeds.pose[i] * value);
+                            });
                         }
                     }
                 });

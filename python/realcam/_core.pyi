@@ -3571,9 +3571,11 @@ class _PictureGradient:
         settings: RenderSettings,
         filter: str,
         variables: Sequence[tuple[str, int, int, int]],
+        device: str,
     ) -> None:
         """
         Prepares derivatives of a picture. filter: "tent" or "gaussian". variables: see Lens._ray_derivatives.
+        device: as for render; several GPUs are refused.
         The numbers of a camera are, in this order: the variables; translation (mm) and rotation (rad) of the film about its
         centre relative to the camera, along the film's axes; translation and rotation of the camera, along the camera's axes;
         and the radius of the diaphragm (mm).
@@ -3609,8 +3611,8 @@ class _PictureGradient:
     ) -> NDArray[np.float64]:
         """
         Returns the derivatives of sum(adjoint * picture) by all numbers of the camera, (N,).
-        adjoint: (H, W, 3). control: control variate of the radiance, (H, W, 3), or None; the derivatives are then those of
-        picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests.
+        adjoint: (H, W, 3). control: control variate of the radiance, (H, W, 3), or None; the derivatives by the pose
+        are then those of picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests.
         """
     @property
     def number_count(self) -> int:

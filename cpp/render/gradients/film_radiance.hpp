@@ -55,7 +55,7 @@ REALCAM_HD inline void sample_film(const CameraView& camera, const SampleBlock<N
 }
 
 /// Traces the paths of rays that have left the lens; results.irradiance becomes the ray's weight times its radiance.
-template <int N, class SceneT>
+template <SceneKind scene_kind, int N, class SceneT>
 REALCAM_HD inline void trace_radiance(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                       const SampleBlock<N>& block, const CameraRays<N>& rays,
                                       const Lanes<float, N>& time, SceneT&& scene, PathResults<N>& results) {
@@ -64,7 +64,7 @@ REALCAM_HD inline void trace_radiance(const SceneView& view, const CameraView& c
     for (int i = 0; i < N; ++i) path.rays.time[i] = time[i];
     start_paths(rays, path, results);
     for (int bounce = 0;
-         advance_paths<SceneKind::any>(view, camera, settings, block, bounce, scene, NoProbe{}, path, results);)
+         advance_paths<scene_kind>(view, camera, settings, block, bounce, scene, NoProbe{}, path, results);)
         ++bounce;
 }
 

@@ -56,12 +56,10 @@ class _Numbers:
     directions: Doubles
 
     @property
-    def moves_lens(self) -> NDArray[np.bool_]:
-        """(P,): True for parameters that change more than the camera's pose."""
+    def move_camera(self) -> bool:
+        """True if a parameter changes the pose."""
         first = len(self.variables) + _POSE
-        others = np.delete(self.directions, np.s_[first : first + 6], axis=1)
-        changes: NDArray[np.bool_] = np.any(others != 0, axis=1)
-        return changes
+        return bool(np.any(self.directions[:, first : first + 6] != 0))
 
 
 def render_gradient(
@@ -74,6 +72,7 @@ def render_gradient(
     outline_spp: int | None = None,
     control_spp: int | None = None,
     settings: RenderSettings | None = None,
+    device: str = "auto",
     **changes: Unpack[_SettingsKwargs],
 ) -> NDArray[np.floating]:
     """Derivatives of a picture by parameters of its camera: unbiased, with occlusion, shadows and vignetting.
@@ -95,6 +94,8 @@ def render_gradient(
     settings, changes: settings of rc.render; the samples on the film are those of rc.render with the same seed.
       Derivatives take no noise goal, and no effect but dispersion. They trace no lights, so that the images of point
       lights and suns themselves are missing.
+    device: as in rc.render, but a single GPU. Only derivatives with an adjoint run on GPUs, for lenses without freeform
+      surfaces; "auto" takes the CPU for all others. Both devices have the same samples, but for roundings.
 
     The derivative is taken at fixed rays of the scene (docs/picture-derivatives.md). Raises InputError for what is not
     supported, by name.
@@ -103,8 +104,10 @@ def render_gradient(
         parameters = [parameters]
     final = _final_settings(settings, changes)
     numbers = _numbers_of(camera.lens, parameters)
+    if adjoint is None and device == "auto":
+        device = "cpu"
     of_picture = _core._PictureGradient(
-        scene, camera, final, filter, [variable.as_tuple() for variable in numbers.variables]
+        scene, camera, final, filter, [variable.as_tuple() for variable in numbers.variables], device
     )
     spp = _spp_of(final)
     control_count = max(1, spp // 4) if control_spp is None else control_spp
@@ -113,25 +116,13 @@ def render_gradient(
         "spp": spp,
         "outline_spp": max(1, spp // 4) if outline_spp is None else outline_spp,
     }
-    # The derivative of uniform light by the pose is 0. For all other parameters it is added, from the same samples, and
-    # cancels the control variate.
-    uses_control = control_count > 0 and not numbers.moves_lens.all()
+    uses_control = control_count > 0 and numbers.move_camera
     control = _control(of_picture, final.seed, control_count) if uses_control else None
-    even: dict[str, Any] = {**samples, "uniform": True}
     if adjoint is not None:
         of_pixels = np.asarray(adjoint, np.float32)
         gradient: Doubles = numbers.directions @ of_picture.reverse(of_pixels, control, **samples)
-        if control is not None and numbers.moves_lens.any():
-            of_light = np.zeros_like(of_pixels)
-            of_light[..., 0] = (of_pixels * control).sum(-1)
-            by_even: Doubles = numbers.directions @ of_picture.reverse(of_light, None, **even)
-            gradient += np.where(numbers.moves_lens, by_even, 0.0)
         return gradient
-    pictures = of_picture.forward(numbers.directions, control, **samples)
-    if control is not None and numbers.moves_lens.any():
-        moving = numbers.moves_lens
-        pictures[moving] += control * of_picture.forward(numbers.directions[moving], None, **even)
-    return pictures
+    return of_picture.forward(numbers.directions, control, **samples)
 
 
 def render_filtered(
@@ -140,16 +131,18 @@ def render_filtered(
     *,
     filter: str = "tent",
     settings: RenderSettings | None = None,
+    device: str = "auto",
     **changes: Unpack[_SettingsKwargs],
 ) -> Floats:
-    """The picture that render_gradient differentiates: exposure in lux seconds, (H, W, 3), on the CPU.
+    """The picture that render_gradient differentiates: exposure in lux seconds, (H, W, 3).
 
     filter: "tent" or "gaussian". The samples are those of rc.render with the same seed. Each counts for all pixels
-    whose filters it reaches; samples beyond the film's border count for the pixels at the border.
+    whose filters it reaches; samples beyond the film's border count for the pixels at the border. device: as in
+    render_gradient.
     Raises InputError as render_gradient.
     """
     final = _final_settings(settings, changes)
-    of_picture = _core._PictureGradient(scene, camera, final, filter, [])
+    of_picture = _core._PictureGradient(scene, camera, final, filter, [], device)
     return of_picture.picture(seed=final.seed, spp=_spp_of(final))
 
 

@@ -11,6 +11,7 @@ import pytest
 import realcam as rc
 from numpy.typing import NDArray
 
+from ..device_memory import needs_gpu
 from ..scenes import quad, scene_of, sky
 
 SEEDS = 16
@@ -44,13 +45,15 @@ def estimate(of_seed: Callable[[int], NDArray[np.float64]]) -> tuple[NDArray[np.
 
 
 def difference(
-    scene: rc.Scene, below: rc.Camera, above: rc.Camera, step: float, *, spp: int = 128, filter: str = "tent"
+    scene: rc.Scene, below: rc.Camera, above: rc.Camera, step: float, device: str, *, spp: int, filter: str
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Central difference of sum(ADJOINT * picture) between cameras 2 steps apart."""
 
     def of_seed(seed: int) -> NDArray[np.float64]:
         to, start = (
-            rc.render_filtered(scene, camera, filter=filter, spp=spp, seed=1000 + seed, max_bounces=0).astype(float)
+            rc.render_filtered(
+                scene, camera, filter=filter, device=device, spp=spp, seed=1000 + seed, max_bounces=0
+            ).astype(float)
             for camera in (above, below)
         )
         return np.asarray(((to - start) * ADJOINT).sum() / (2 * step))
@@ -97,42 +100,50 @@ STEPS = {
 }
 
 
-def check_against_differences(scene: rc.Scene, camera: rc.Camera, filter: str, spp: int, parameters: list[str]) -> None:
+def check_against_differences(
+    scene: rc.Scene, camera: rc.Camera, filter: str, spp: int, parameters: list[str], device: str
+) -> None:
     found, error = estimate(
         lambda seed: rc.render_gradient(
-            scene, camera, parameters, ADJOINT, filter=filter, spp=spp, seed=seed, max_bounces=0
+            scene, camera, parameters, ADJOINT, filter=filter, device=device, spp=spp, seed=seed, max_bounces=0
         )
     )
     for i, parameter in enumerate(parameters):
         step = STEPS[parameter]
         wanted, wanted_error = difference(
-            scene, changed(camera, parameter, -step), changed(camera, parameter, step), step, spp=2 * spp, filter=filter
+            scene,
+            changed(camera, parameter, -step),
+            changed(camera, parameter, step),
+            step,
+            device,
+            spp=2 * spp,
+            filter=filter,
         )
         z = (found[i] - wanted) / np.hypot(error[i], wanted_error)
         assert abs(z) < ERRORS, f"{parameter}: {found[i]} +- {error[i]}, wanted {wanted} +- {wanted_error}"
 
 
-def test_rings_pose_and_film_equal_differences() -> None:
+def test_rings_pose_and_film_equal_differences(device: str) -> None:
     parameters = ["focus_distance_m", "f_number", "yaw_deg", "film_shift_right_mm"]
-    check_against_differences(stripes(), corner_camera(), "tent", 48, parameters)
+    check_against_differences(stripes(), corner_camera(), "tent", 48, parameters, device)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("filter", ["tent", "gaussian"])
 @pytest.mark.parametrize("f_number", [2.2, 4.0])
 @pytest.mark.parametrize("occluder", [False, True])
-def test_all_parameters_equal_differences(filter: str, f_number: float, occluder: bool) -> None:
-    check_against_differences(stripes(occluder), corner_camera(f_number), filter, 512, list(STEPS))
+def test_all_parameters_equal_differences(filter: str, f_number: float, occluder: bool, device: str) -> None:
+    check_against_differences(stripes(occluder), corner_camera(f_number), filter, 512, list(STEPS), device)
 
 
-def test_control_variate_changes_the_noise_but_not_the_mean() -> None:
+def test_control_variate_changes_the_noise_but_not_the_mean(device: str) -> None:
     scene, camera = stripes(), corner_camera()
     parameters = ["up_m", "focus_distance_m", rc.Variable.radius(0)]
 
     def with_control(spp: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         return estimate(
             lambda seed: rc.render_gradient(
-                scene, camera, parameters, ADJOINT, spp=32, seed=seed, control_spp=spp, max_bounces=0
+                scene, camera, parameters, ADJOINT, spp=32, seed=seed, control_spp=spp, max_bounces=0, device=device
             )
         )
 
@@ -143,7 +154,7 @@ def test_control_variate_changes_the_noise_but_not_the_mean() -> None:
 def test_forward_is_the_transpose_of_reverse() -> None:
     scene, camera = stripes(), corner_camera()
     parameters = ["right_m", "f_number", "focus_distance_m", rc.Variable.thickness(1)]
-    settings = {"spp": 4, "control_spp": 4, "max_bounces": 0}
+    settings = {"spp": 4, "control_spp": 4, "max_bounces": 0, "device": "cpu"}
     pictures = rc.render_gradient(scene, camera, parameters, **settings)
     assert pictures.shape == (4, 8, 8, 3)
     reverse = rc.render_gradient(scene, camera, parameters, ADJOINT, **settings)
@@ -152,13 +163,13 @@ def test_forward_is_the_transpose_of_reverse() -> None:
     assert np.all(np.abs((pictures * ADJOINT).sum((1, 2, 3)) - reverse) < 1e-5 * sizes)
 
 
-def test_even_light_has_no_derivative_by_pose() -> None:
+def test_even_light_has_no_derivative_by_pose(device: str) -> None:
     # The control variate is the radiance itself.
-    gradient = rc.render_gradient(sky(), corner_camera(), ["right_m", "up_m", "yaw_deg"], ADJOINT, spp=4)
+    gradient = rc.render_gradient(sky(), corner_camera(), ["right_m", "up_m", "yaw_deg"], ADJOINT, spp=4, device=device)
     assert np.all(np.abs(gradient) < 1e-4)
 
 
-def test_filtered_picture_is_the_tent_of_a_finer_picture() -> None:
+def test_filtered_picture_is_the_tent_of_a_finer_picture(device: str) -> None:
     scene, camera = stripes(), corner_camera()
     # 16 x 16 fine pixels per pixel, on a film that is one pixel wider on each side.
     fine_film = camera.film.replace(width_mm=1.0, height_mm=1.0, resolution=(160, 160))
@@ -173,10 +184,74 @@ def test_filtered_picture_is_the_tent_of_a_finer_picture() -> None:
         return np.stack([np.tensordot(tent, rows[:, 16 * i + 8 : 16 * i + 40], (0, 1)) for i in range(8)], 1)
 
     wanted, wanted_error = estimate(coarse)
-    found, error = estimate(lambda seed: rc.render_filtered(scene, camera, spp=128, seed=seed, max_bounces=0))
+    found, error = estimate(
+        lambda seed: rc.render_filtered(scene, camera, spp=128, seed=seed, max_bounces=0, device=device)
+    )
     # The midpoints of 32 fine pixels integrate the tent to 1e-3. Pixels behind the edge are black.
     assert np.all(np.abs(found - wanted) <= ERRORS * np.hypot(error, wanted_error) + 1e-3 * wanted)
     assert np.count_nonzero(wanted) > 50
+
+
+def tilted() -> rc.Camera:
+    """corner_camera with a lens that has no symmetry: an element is decentred, and the last surface tilted."""
+    camera = corner_camera()
+    lens = camera.lens.with_surface(2, decentre_mm=(0.2, -0.1, 0.0), returns=True)
+    return camera.replace(lens=lens.with_surface(10, tilt_deg=(0.5, 0.3, 0.0)))
+
+
+def with_aspheres() -> rc.Camera:
+    lens = rc.Lens.load("phone-4mm").focused(2.0)
+    return rc.Camera(lens, film=rc.Film(0.4, 0.4, (8, 8), shift_mm=(1, 0.7)), exposure_time_s=1.0)
+
+
+@needs_gpu
+@pytest.mark.parametrize("bounces", [0, 3])
+@pytest.mark.parametrize("effects", [(), ("dispersion",)])
+@pytest.mark.parametrize("camera", [corner_camera, tilted, with_aspheres])
+def test_devices_agree(camera: Callable[[], rc.Camera], effects: tuple[str, ...], bounces: int) -> None:
+    """With the same seed, samples differ by roundings alone, which may bring a few of them to another surface: less
+    than a tenth of their noise. With other seeds, the means differ by their noise."""
+    scene, taken_by = stripes(), camera()
+    variables = [rc.Variable.radius(1), rc.Variable.thickness(2), rc.Variable.index(3), rc.Variable.decentre(3)]
+    parameters = ["right_m", "backward_m", "yaw_deg", "film_tilt_x_deg", "focus_distance_m", *variables]
+
+    def on(device: str, first: int = 0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return estimate(
+            lambda seed: rc.render_gradient(
+                scene,
+                taken_by,
+                parameters,
+                ADJOINT,
+                spp=32,
+                seed=first + seed,
+                device=device,
+                effects=effects,
+                max_bounces=bounces,
+            )
+        )
+
+    (mean, error), (same, _), (other, other_error) = on("cpu"), on("cuda"), on("cuda", 100)
+    assert np.all(np.abs(same - mean) < 0.1 * error)
+    assert np.all(np.abs(other - mean) < ERRORS * np.hypot(error, other_error))
+
+
+@needs_gpu
+def test_a_gpu_gives_the_same_bits_again() -> None:
+    def gradient() -> NDArray[np.float64]:
+        return rc.render_gradient(stripes(), corner_camera(), ["up_m", rc.Variable.radius(0)], ADJOINT, device="cuda")
+
+    assert np.array_equal(gradient(), gradient())
+
+
+@needs_gpu
+def test_what_gpus_do_not_support_is_refused_in_one_line() -> None:
+    with pytest.raises(rc.InputError, match=r"in forward mode run on the CPU: use device=\"cpu\"$"):
+        rc.render_gradient(sky(), corner_camera(), "up_m", device="cuda")
+    lens = rc.Lens.load("anamorphic-31mm").focused(2.0)
+    camera = rc.Camera(lens, film=rc.Film(0.8, 0.8, (8, 8)))
+    with pytest.raises(rc.InputError, match=r"do not support freeform surfaces, and lens .* has one"):
+        rc.render_gradient(sky(), camera, "up_m", ADJOINT, device="cuda")
+    rc.render_gradient(sky(), camera, "up_m", ADJOINT, spp=1)  # the CPU is chosen
 
 
 @pytest.mark.parametrize(
