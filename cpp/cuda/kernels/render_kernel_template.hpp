@@ -2,6 +2,7 @@
 #include "../../camera/ray_request.hpp"
 #include "../device/launch_grid.hpp"
 #include "bvh_scene.hpp"
+#include "exact_sums.hpp"
 #include "render_kernel.hpp"
 #include "warp_tiles.hpp"
 
@@ -86,18 +87,6 @@ struct ThreadSums {
     }
 };
 
-/// Adds a contribution to a pixel that several threads may add to, in any order. Contributions are rounded to multiples
-/// of 2^-24, of which doubles hold sums up to 2^53 exactly, so that their sum is independent of the order. `dither`:
-/// random number from 0 to 1, which makes the rounding unbiased.
-__device__ inline void add_shared(double& sum, double value, float dither) {
-    atomicAdd(&sum, 0x1p-24 * floor(0x1p24 * value + static_cast<double>(dither)));
-}
-__device__ inline void add_shared(double (&sums)[3], Color c, float dither) {
-    add_shared(sums[0], static_cast<double>(c.r), dither);
-    add_shared(sums[1], static_cast<double>(c.g), dither);
-    add_shared(sums[2], static_cast<double>(c.b), dither);
-}
-
 /// Adds a sample's contributions to pixels other than its own.
 template <Effects effects>
 __device__ inline void add_shared(const SampleBlock<1>& block, const PathResultsWith<1, effects>& results,
@@ -107,8 +96,8 @@ __device__ inline void add_shared(const SampleBlock<1>& block, const PathResults
         if (away == 0) continue;
         const float dither = unit_float(block.bits(0, static_cast<std::uint32_t>(step)));
         const Color c = results.shared.irradiance[step][0];
-        if (!is_black(c)) add_shared(own[away].irradiance, c, dither);
-        add_shared(own[away].auxiliary, results.shared.white[step][0], dither);
+        if (!is_black(c)) add_exact(own[away].irradiance, c, dither);
+        add_exact(own[away].auxiliary, results.shared.white[step][0], dither);
     }
 }
 
@@ -191,8 +180,8 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
             const std::uint32_t bits =
                 hash32(pixel_stream((job.first_row + row) * job.camera.width + column, job.seed), job.first_sample);
             for (int c = 0; c < 3; ++c) {
-                add_shared(job.sums[pixel].irradiance[c], sum.irradiance[c], unit_float(bits));
-                add_shared(job.sums[pixel].auxiliary[c], sum.auxiliary[c], unit_float(bits));
+                add_exact(job.sums[pixel].irradiance[c], sum.irradiance[c], unit_float(bits));
+                add_exact(job.sums[pixel].auxiliary[c], sum.auxiliary[c], unit_float(bits));
             }
             job.sums[pixel].add_all_but_colours(sum);
         } else {
