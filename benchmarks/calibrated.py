@@ -5,7 +5,8 @@
 640 x 480 pixels of the demo's scene, without effects and with one bounce, and the camera's rays alone.
 Each calibration is a model fitted to the lens, so that both cameras see the same. They alternate, so that other load of
 the machine affects both; the table gives the median ratio and the range of its middle half. On a CPU, times are
-processor times. The preparation, once for each setting of the lens, is the difference of the two cameras.
+processor times. The preparation is that of both cameras, for a picture of 8 x 6 pixels: after a change of focus without
+effects, and after a change of the pose with the planner's effects.
 """
 
 from __future__ import annotations
@@ -52,6 +53,31 @@ def take_first(session: rc.Session, camera: rc.Camera) -> None:
     session.add(1)
 
 
+def preparation_ms(
+    scene: rc.Scene,
+    pair: Sequence[rc.Camera],
+    settings: rc.RenderSettings,
+    rounds: int,
+    device: str,
+    clock: Callable[[], float],
+) -> str:
+    """Returns the median times of the first samples of both cameras, after a change of focus or, if the effects are
+    planned, of the pose, as text."""
+    medians = []
+    for camera in pair:
+        film = camera.film
+        small = camera.replace(film=rc.Film(film.width_mm, film.height_mm, (8, 6), film.shift_mm))
+        session = rc.Session(scene, small, settings, device=device)
+        take_first(session, small)
+        x, y, z = camera.position
+        if settings.effects == ():
+            changed = [small.replace(lens=camera.lens.focused(2 + 0.1 * k)) for k in range(rounds)]
+        else:
+            changed = [small.replace(position=(x + 0.01 * k, y, z)) for k in range(1, rounds + 1)]
+        medians.append(np.median([seconds(partial(take_first, session), view, clock) for view in changed]))
+    return ", ".join(f"{1000 * median:.1f}" for median in medians)
+
+
 def ratio(work: Callable[[T], object], pair: Sequence[T], rounds: int, clock: Callable[[], float]) -> str:
     """Returns the median of the time for the second subject over that for the first, and the range of its middle half,
     as text."""
@@ -77,7 +103,8 @@ def main() -> None:
     shot = rc.Shot.load("demo", device=arguments.device)
     settings = rc.RenderSettings(spp=arguments.spp, max_bounces=1, effects=(), threads=arguments.threads)
     print(machine())
-    print("| lens | picture | rays alone | preparation, ms |\n|---|---|---|---|")
+    print("| lens | picture | rays alone | new focus, ms | new pose, planned, ms |\n|---|---|---|---|---|")
+    planned = rc.RenderSettings(spp=1, threads=arguments.threads)
     for name, width_mm in LENSES.items():
         pair = cameras(name, width_mm, shot)
         sessions = [rc.Session(shot.scene, camera, settings, device=arguments.device) for camera in pair]
@@ -88,8 +115,11 @@ def main() -> None:
             arguments.rounds,
             clock,
         )
-        own, moved = (seconds(partial(take_first, sessions[0]), camera.replace(iso=50), clock) for camera in pair)
-        print(f"| {name} | {picture} | {rays} | {1000 * (moved - own):.0f} |", flush=True)
+        focus, pose = (
+            preparation_ms(shot.scene, pair, each, arguments.rounds, arguments.device, clock)
+            for each in (settings, planned)
+        )
+        print(f"| {name} | {picture} | {rays} | {focus} | {pose} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Where was the camera, and how was it set? Finds pose, focus and f-number of a picture of a known scene.
+"""Finds pose, focus and f-number of a camera from a picture of a known scene.
 
     python examples/camera_from_picture.py [--starts 20]
 
@@ -20,7 +20,7 @@ SCALE = np.array([0.05, 0.05, 0.05, 2, 2, 5, 0.3, 0.5])
 BOUNDS = [-1.0] * 3 + [-30.0] * 3 + [1.0, 2.2], [1.0] * 3 + [30.0] * 3 + [20.0, 16.0]
 FOCUS_M, F_NUMBER = 2.5, 4.0
 # Samples per pixel of pictures and of each estimate of their derivatives, by the size of the blocks.
-SPP = {8: (32, 8), 4: (32, 8), 2: (128, 16), 1: (256, 32)}
+SPP = {8: (8, 8), 4: (16, 8), 2: (64, 16), 1: (256, 32)}
 READ_NOISE_E = 3.0
 
 
@@ -50,7 +50,7 @@ class Problem:
     def __init__(self) -> None:
         self.scene = squares()
         lens = rc.Lens.load("double-gauss-50mm").focused(FOCUS_M).stopped_down(F_NUMBER)
-        camera = rc.Camera(lens, film=rc.Film(24, 16, (24, 16)), exposure_time_s=1)
+        camera = rc.Camera(lens, film=rc.Film(24, 16, (48, 32)), exposure_time_s=1)
         self.family = rc.CameraParameters(camera, PARAMETERS)
         self.truth = self.family.values
         # The exposure gives 2000 electrons per pixel and filter on average.

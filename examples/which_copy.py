@@ -1,8 +1,8 @@
-"""Which copy is this? Finds the spacings, tilts and decentres of a manufactured lens from pictures of a chart.
+"""Finds the spacings, tilts and decentres of a manufactured copy of a lens from pictures of a chart.
 
     python examples/which_copy.py [--copies 2] [--grade precision]
 
-Copies of a lens are drawn from a tolerance class. Each photographs a chart, in the centre of the film and in three of
+Copies of a lens are drawn from a tolerance class. Each photographs a chart, in the centre of the film and in two of
 its corners, at three settings of the focusing ring, with shot noise. rc.fit_pictures finds its errors by Gauss-Newton
 steps, with the class as prior. Prints the directions that the pictures determine worst, and how well pictures at
 another focus and f-number, which were not used, are predicted: beside the nominal lens, in units of the noise.
@@ -17,20 +17,20 @@ import numpy as np
 import realcam as rc
 from realcam.tolerance.elements import elements_of
 
-PIXELS, SIDE_MM = 12, 0.24
+PIXELS, SIDE_MM = 8, 0.24
 FOCUS_M, HELD_OUT_M, F_NUMBER, HELD_OUT_F_NUMBER = (1.92, 2.0, 2.08), 1.96, 2.8, 2.4
 CHART_M = 2.0
-CORNERS_MM = ((0, 0), (12, 8), (-12, 8), (-12, -8))
-SPP = {4: (32, 8), 2: (64, 16), 1: (128, 16)}
-ELECTRONS = 20000  # of a pixel on average
+PLACES_MM = ((0, 0), (12, 8), (-12, -8))
+SPP = {4: (128, 64), 2: (256, 128), 1: (512, 128)}
+ELECTRONS = 2000  # of a pixel on average
 LIMIT_DEG = 0.02  # standard deviation of the camera's unknown pitch and yaw
 
 
-def chart(places_m: np.ndarray) -> rc.Scene:
+def chart(points_m: np.ndarray) -> rc.Scene:
     """Shining squares of three sizes around each point of the chart, which is at the distance CHART_M."""
     random = np.random.default_rng(2)
     vertices, materials = [], []
-    for x, y in places_m:
+    for x, y in points_m:
         for layer, (side, reach) in enumerate(((0.008, 0.03), (0.003, 0.012), (0.001, 0.006))):
             for _ in range(60):
                 u, v = np.array((x, y)) + random.uniform(-reach, reach, 2)
@@ -76,7 +76,7 @@ class Bench:
         self.names = [*names, "pitch", "yaw"]
         self.deviations = np.array([*deviations, LIMIT_DEG, LIMIT_DEG])
         to_pupil_m = CHART_M - 0.085
-        self.scene = chart(np.array(CORNERS_MM) * to_pupil_m / 51.0)
+        self.scene = chart(np.array(PLACES_MM) * to_pupil_m / 51.0)
         first = self.pictures(np.zeros(len(self.names)), 1, scale=1.0)
         self.scale = ELECTRONS / first.mean()
 
@@ -119,7 +119,7 @@ class Bench:
         found = []
         for focus in focus_m:
             lens = self.lens_with(errors, focus, f_number)
-            for shift in CORNERS_MM:
+            for shift in PLACES_MM:
                 film = rc.Film(SIDE_MM, SIDE_MM, (PIXELS, PIXELS), shift_mm=shift)
                 camera = rc.Camera(lens, film=film, exposure_time_s=1)
                 found.append(rc.CameraParameters(camera, ["pitch_deg", "yaw_deg"]).camera_at(errors[-2:]))
@@ -152,7 +152,13 @@ class Bench:
         """(P, K, H, W, 1)"""
         found = [
             rc.render_gradient(
-                self.scene, camera, self.directions(), seed=1000 * seed + i, spp=SPP[block][1], max_bounces=0
+                self.scene,
+                camera,
+                self.directions(),
+                seed=1000 * seed + i,
+                spp=SPP[block][1],
+                control_spp=0,
+                max_bounces=0,
             ).mean(-1, keepdims=True)
             for i, camera in enumerate(self.cameras(errors, FOCUS_M, F_NUMBER))
         ]
@@ -193,7 +199,7 @@ def main() -> None:
             bench.deviations,
             prior=(nothing, bench.deviations),
             blocks=(4, 2, 1),
-            steps=4,
+            steps=5,
         )
         off = (fit.values - truth) @ np.linalg.solve(fit.covariance, fit.values - truth) / len(truth)
         print(f"copy {number}: chi^2 {fit.chi_square:.2f}, mean square error / posterior variance {off:.2f}")

@@ -116,7 +116,7 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
                                ? last->axis_irradiance_
                                : static_cast<float>(axis_irradiance(camera.lens));
         if (camera.model == CameraModel::mapped_lens) set_map(tracer, last);
-        set_bundle_motions(last);
+        set_bundle_motions(tracer, last);
         return;
     }
     if (camera.model == CameraModel::polynomial_lens) require_radial_pupil(camera.lens, "the camera model polynomial");
@@ -134,7 +134,7 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
                                 film_path_ends(camera.lens, LightDirection::to_scene));
         view_in_double_ = path_in_double_->view();
     }
-    set_bundle_motions(last);
+    set_bundle_motions(tracer, last);
 }
 
 CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
@@ -250,12 +250,13 @@ void CameraSetup::set_map(const PupilTracer& tracer, const CameraSetup* last) {
     map_ = std::make_shared<const LensMap>(lens, film_radius(), image, data.entrance_pupil_position, tracer);
 }
 
-void CameraSetup::set_bundle_motions(const CameraSetup* last) {
+void CameraSetup::set_bundle_motions(const PupilTracer& tracer, const CameraSetup* last) {
     if (!camera_.geometry) return;
     const bool is_unchanged = last && last->bundle_motions_ && last->camera_.geometry == camera_.geometry &&
                               last->camera_.model == camera_.model && last->has_lens_and_film_of(*this);
-    bundle_motions_ = is_unchanged ? last->bundle_motions_
-                                   : std::make_shared<const BundleMotions>(camera_, view(camera_.pose.position_m));
+    bundle_motions_ = is_unchanged
+                          ? last->bundle_motions_
+                          : std::make_shared<const BundleMotions>(camera_, view(camera_.pose.position_m), tracer);
 }
 
 CameraFrame CameraSetup::placement(const Affine<double>& scene_from_camera, Vec3d origin_m) {
@@ -284,16 +285,17 @@ bool CameraSetup::has_pupil_for(const std::vector<double>& wavelengths, PupilSam
 
 std::shared_ptr<const CameraSetup> LastSetup::make(const Camera& camera, const PupilTracer& tracer,
                                                    const LensEffects& effects, PupilStart start) {
-    // The lock is not held during the search of the pupil, so that no thread waits for another thread's camera.
-    const std::shared_ptr<const CameraSetup> last = get();
+    const std::pair key(camera.model, camera.geometry != nullptr);
+    std::shared_ptr<const CameraSetup> last;
+    {
+        // The lock is not held during the search of the pupil, so that no thread waits for another thread's camera.
+        const std::lock_guard lock(mutex_);
+        const auto found = setups_.find(key);
+        last = found != setups_.end() ? found->second : latest_;
+    }
     auto setup = std::make_shared<const CameraSetup>(camera, tracer, last.get(), effects, start);
     const std::lock_guard lock(mutex_);
-    return setup_ = std::move(setup);
-}
-
-std::shared_ptr<const CameraSetup> LastSetup::get() const {
-    const std::lock_guard lock(mutex_);
-    return setup_;
+    return setups_[key] = latest_ = std::move(setup);
 }
 
 }  // namespace realcam

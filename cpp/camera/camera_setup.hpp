@@ -1,7 +1,9 @@
 #pragma once
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "../optics/lens/lens_polynomial.hpp"
@@ -77,7 +79,7 @@ private:
     static CameraFrame placement(const Affine<double>& scene_from_camera, Vec3d origin_m);
 
     /// Computes the motions of a calibrated camera's bundles, or reuses those of `last`.
-    void set_bundle_motions(const CameraSetup* last);
+    void set_bundle_motions(const PupilTracer& tracer, const CameraSetup* last);
 
     /// Sets the view's keyframes and row times; leaves the times 0 if nothing moves.
     void set_times(CameraView& view, bool scene_moves) const;
@@ -102,20 +104,21 @@ private:
     std::shared_ptr<const BundleMotions> bundle_motions_;  ///< calibrated cameras only
 };
 
-/// Cache of the last camera set-up, whose pupil serves the next one if lens and film are equal. Thread-safe.
+/// Cache of the last camera set-up of each camera model, with and without a calibration, whose tables serve the next
+/// one if lens and film are equal. They are stored apart because the planner takes pictures with other models between
+/// two pictures of a camera. Thread-safe.
 class LastSetup {
 public:
-    /// Returns a set-up of the camera and stores it as the last one. Throws InputError as CameraSetup; the last set-up
-    /// is then unchanged. Parameters: see CameraSetup.
+    /// Returns a set-up of the camera and stores it. Throws InputError as CameraSetup; the cache is then unchanged.
+    /// Parameters: see CameraSetup.
     std::shared_ptr<const CameraSetup> make(const Camera& camera, const PupilTracer& tracer,
                                             const LensEffects& effects = {},
                                             PupilStart start = PupilStart::from_scratch);
 
 private:
-    std::shared_ptr<const CameraSetup> get() const;
-
     mutable std::mutex mutex_;
-    std::shared_ptr<const CameraSetup> setup_;
+    std::map<std::pair<CameraModel, bool>, std::shared_ptr<const CameraSetup>> setups_;
+    std::shared_ptr<const CameraSetup> latest_;  ///< serves a model that has no set-up yet
 };
 
 }  // namespace REALCAM_NAMESPACE

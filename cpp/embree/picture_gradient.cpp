@@ -207,7 +207,7 @@ std::vector<double> PictureGradient::reverse(const float* adjoint, const float* 
 
 /// Direction in the space of the camera's numbers, in forward mode.
 struct PictureGradient::Direction {
-    TangentPath::Coefficients all, pose;  ///< of all numbers, and of those of the pose alone
+    TangentPath::Coefficients all, pose;  ///< coefficients by all numbers, and by those of the pose alone
     double stop_rate;
 };
 

@@ -29,10 +29,13 @@ inline Plan make_plan(Session& session, const Assembly& scene, const Camera& cam
     Camera full = camera;
     full.lens = centred(camera.lens);
     const SceneFacts facts = probe_scene(session, scene, full, settings, progress);
-    Camera ideal = full;
     full.model = CameraModel::full_lens;
+    // All models have the directions of a calibration, so that the bundles of the lens itself are compared.
+    Camera traced = full;
+    traced.geometry = nullptr;
+    Camera ideal = traced;
     ideal.model = CameraModel::thin_lens;
-    const CameraSetup full_setup(full, tracer), ideal_setup(ideal, tracer);
+    const CameraSetup full_setup(traced, tracer), ideal_setup(ideal, tracer);
     const LensErrors errors =
         lens_errors(full_setup.view({0, 0, 0}), ideal_setup.view({0, 0, 0}), full.lens, facts, tracer);
     Plan plan = plan_shot(camera, errors, facts, settings);

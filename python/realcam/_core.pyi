@@ -823,7 +823,7 @@ class Lens:
         Returns the calibration that a camera with this lens would have: a camera model fitted to the lens's rays, at its
         focus and f-number.
 
-        film_mm: (width, height), and resolution: (columns, rows); None: see Film.for_lens. model: see rc.fit_camera_model;
+        film_mm: (width, height), and resolution: (columns, rows); None: see Film.for_lens. model: see fit_camera_model;
         None: "opencv5" if it fits to 0.05 pixels RMS, and otherwise the better one of it and "fisheye". distance_m,
         through: see fit_camera_model.
         The result can be saved in all formats of docs/calibration.md. Its rms_px and max_px say how well the model fits.
@@ -2669,11 +2669,14 @@ class ProjectionStatus(IntEnum):
     BEHIND = 3
     BAD_INPUT = 4
 
-def traced_chief_rays(camera: Camera, pixels: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def traced_chief_rays(
+    camera: Camera, pixels: ArrayLike, lens_rays: tuple[ArrayLike, ArrayLike] | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """
     Returns (origins_m, directions), (N, 3) float64, scene, of the chief rays of pixels (N, 2) in front of the
     camera: each is traced through the lens, or is that of the camera model, and moved as rendering moves it. Origins lie on
     the ray near the centre of projection. NaN for pixels without a chief ray. For a camera that does not move.
+    lens_rays: the result for these pixels of the camera without its geometry; None: traced here.
     """
 
 @final
@@ -3617,8 +3620,8 @@ class _PictureGradient:
         """
         Returns the derivatives of sum(adjoint * picture) by all numbers of the camera, (N,).
         adjoint: (H, W, 3). control: control variate of the radiance, (H, W, 3), or None; derivatives by the pose are then those
-        of picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests. pairs: False: all samples on
-        the film are independent, for comparison.
+        of picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests.
+        pairs: False: all samples on the film are independent, for comparison.
         """
     @property
     def number_count(self) -> int:

@@ -41,7 +41,7 @@ ORDER = {
     # Views, which kernels read, contain one another: the camera's view contains those of its effects. So they form the
     # lowest layer, whichever folder they are in.
     "camera": (
-        "*_view.hpp effects/effect_views.hpp effects/effects.hpp models/pixel_pupil.hpp",
+        "*_view.hpp effects/effect_views.hpp effects/effects.hpp film/pixel_filter.hpp models/pixel_pupil.hpp",
         "film",
         "models",
         "effects effects/*",

@@ -77,8 +77,8 @@ std::shared_ptr<const ProjectionRays> projection_rays_of(const Camera& camera, P
     else
         rays = std::make_shared<const ProjectionGrid>(*setup, ray, loop);
     if (camera.geometry)
-        rays = std::make_shared<const CalibratedProjection>(std::move(rays),
-                                                            BundleMotions(camera, setup->view(camera.pose.position_m)));
+        rays = std::make_shared<const CalibratedProjection>(
+            std::move(rays), BundleMotions(camera, setup->view(camera.pose.position_m), fast_pupil_tracer()));
     const std::lock_guard lock(mutex);
     cached_key = std::move(key);
     return cached_rays = std::move(rays);
@@ -146,10 +146,13 @@ Typed<"tuple[NDArray[float64], ...]", py::tuple> rays_through(const Camera& came
 }
 
 /// See traced_chief_rays in bind_projection.
-Typed<"tuple[NDArray[float64], NDArray[float64]]", py::tuple> traced_chief_rays(const Camera& camera,
-                                                                                const Doubles& pixels) {
+Typed<"tuple[NDArray[float64], NDArray[float64]]", py::tuple> traced_chief_rays(
+    const Camera& camera, const Doubles& pixels, const std::optional<std::pair<Doubles, Doubles>>& lens_rays) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     const std::int64_t count = row_count(pixels, 2, "pixels");
+    if (lens_rays && (row_count(lens_rays->first, 3, "lens_rays[0]") != count ||
+                      row_count(lens_rays->second, 3, "lens_rays[1]") != count))
+        throw InputError("lens_rays must have a ray for each pixel");
     py::array_t<double> origins({count, std::int64_t{3}}), directions({count, std::int64_t{3}});
     const double* from = pixels.data();
     double *to_origins = origins.mutable_data(), *to_directions = directions.mutable_data();
@@ -160,18 +163,28 @@ Typed<"tuple[NDArray[float64], NDArray[float64]]", py::tuple> traced_chief_rays(
         const CameraView view = setup->view(camera.pose.position_m);
         const LensChiefRays chief_rays(camera, view);
         const Affine<double> scene_from_camera = camera_detail::scene_from_camera(camera.pose);
+        const InverseAffine<double> camera_from_scene = scene_from_camera.inverse();
+        const auto lens_ray = [&](std::size_t i, Vec2<double> film) -> std::optional<RayLine> {
+            if (!lens_rays) return chief_rays.trace(film);
+            const auto row = [&](const Doubles& array) {
+                const double* numbers = array.data() + 3 * i;
+                return Vec3d{numbers[0], numbers[1], numbers[2]};
+            };
+            return RayLine{camera_from_scene.direction(row(lens_rays->second)),
+                           1000.0 * camera_from_scene.point(row(lens_rays->first))};
+        };
         parallel_ray_loop(heed_signals).for_all(static_cast<std::size_t>(count), [&](std::size_t i, std::size_t end) {
             for (; i < end; ++i) {
                 const Vec2<double> point = camera.film.point_of({from[2 * i], from[2 * i + 1]});
                 const Vec2f film = {static_cast<float>(-point.x), static_cast<float>(-point.y)};
-                std::optional<RayLine> ray = chief_rays.trace({-point.x, -point.y});
+                std::optional<RayLine> ray = lens_ray(i, {-point.x, -point.y});
                 if (view.bundles.nodes && !is_defined(view.bundles, film)) ray = std::nullopt;
                 if (!ray) ray = RayLine{{kNone, kNone, kNone}, {kNone, kNone, kNone}};
                 Vec3d origin = 0.001 * ray->foot, direction = ray->direction;
                 if (view.bundles.nodes) {
                     const BundleMotion motion = bundle_motion(view.bundles, film);
                     origin = moved_point(view.bundles, motion, origin);
-                    direction = rotated(motion.rotation, direction);
+                    direction = rotated(motion.rotation(), direction);
                 }
                 origin = scene_from_camera.point(origin);
                 direction = scene_from_camera.direction(direction);
@@ -224,10 +237,11 @@ void bind_projection(py::module_& m) {
     for (const auto& [name, status] : statuses) values[name] = static_cast<int>(status);
     m.attr("ProjectionStatus") =
         py::module_::import("enum").attr("IntEnum")("ProjectionStatus", values, "module"_a = "realcam");
-    m.def("traced_chief_rays", &traced_chief_rays, "camera"_a, "pixels"_a,
+    m.def("traced_chief_rays", &traced_chief_rays, "camera"_a, "pixels"_a, "lens_rays"_a = py::none(),
           R"(Returns (origins_m, directions), (N, 3) float64, scene, of the chief rays of pixels (N, 2) in front of the
 camera: each is traced through the lens, or is that of the camera model, and moved as rendering moves it. Origins lie on
-the ray near the centre of projection. NaN for pixels without a chief ray. For a camera that does not move.)");
+the ray near the centre of projection. NaN for pixels without a chief ray. For a camera that does not move.
+lens_rays: the result for these pixels of the camera without its geometry; None: traced here.)");
     py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
         .def("project", &project, "points_m"_a, py::kw_only(), "through"_a = "light", "return_status"_a = false,
              R"(Projects points of the scene to pixels, by real rays at the lens's design wavelength or by the camera

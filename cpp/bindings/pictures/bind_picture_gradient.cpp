@@ -107,8 +107,8 @@ and the radius of the diaphragm (mm).)")
              "terms"_a = "both", "pairs"_a = true,
              R"(Returns the derivatives of sum(adjoint * picture) by all numbers of the camera, (N,).
 adjoint: (H, W, 3). control: control variate of the radiance, (H, W, 3), or None; derivatives by the pose are then those
-of picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests. pairs: False: all samples on
-the film are independent, for comparison.)")
+of picture - control * uniform picture. terms: "both", or one of "interior" and "boundary", for tests.
+pairs: False: all samples on the film are independent, for comparison.)")
         .def("forward", forward, "directions"_a, "control"_a, py::kw_only(), "seed"_a, "spp"_a, "outline_spp"_a,
              "terms"_a = "both", "pairs"_a = true,
              R"(Returns the derivatives of the picture along directions (P, N) of the numbers, (P, H, W, 3).)")

@@ -13,24 +13,37 @@ namespace REALCAM_NAMESPACE {
 // All vectors are in the axes of the camera (x right, y up, z backward), points in metres from the centre of the
 // unshifted film.
 
-/// Motion of the bundle of a film point, from the lens to the scene.
-struct BundleMotion {
-    Vec3f rotation;  ///< axis times the sine of the angle, which is below 90 degrees
-    Vec3f foot;  ///< point of the lens's chief ray that moves to the centre of projection
-    float gain;  ///< factor of the irradiance
+/// Motion of the bundle of a film point, from the lens to the scene. Its numbers are one vector, so that the table is
+/// interpolated by few loads: one for a node on a processor with AVX, and two on a GPU.
+struct alignas(32) BundleMotion {
+    static constexpr int kNumbers = 8;
+
+    float numbers[kNumbers];  ///< rotation, foot, gain, and 0
+
+    /// Axis times the sine of the angle, which is below 90 degrees.
+    REALCAM_INLINE Vec3f rotation() const { return {numbers[0], numbers[1], numbers[2]}; }
+    /// Point of the lens's chief ray that moves to the centre of projection.
+    REALCAM_INLINE Vec3f foot() const { return {numbers[3], numbers[4], numbers[5]}; }
+    /// Factor of the irradiance.
+    REALCAM_INLINE float gain() const { return numbers[6]; }
 };
 
-/// Node of the table of motions.
-struct BundleMotionNode : BundleMotion {
-    /// Derivatives, by x and y, of the film point that sees a given scene point, when the film point on which the lens
-    /// with a fixed motion images the scene point changes: (1, 0) and (0, 1) if the calibration is the lens's own
-    /// geometry.
+/// Derivatives, by x and y, of the film point that sees a given scene point, when the film point on which the lens with
+/// a fixed motion images the scene point changes: (1, 0) and (0, 1) if the calibration is the lens's own geometry.
+struct LandingDerivatives {
     Vec2f by_x, by_y;
+
+    REALCAM_INLINE Vec2f of(Vec2f shift) const {
+        return {shift.x * by_x.x + shift.y * by_y.x, shift.x * by_x.y + shift.y * by_y.y};
+    }
+    /// Area on which light falls in the picture over that behind the lens.
+    REALCAM_INLINE float area() const { return std::fabs(by_x.x * by_y.y - by_x.y * by_y.x); }
 };
 
 /// Table of the motions over the film. Film points in mm.
 struct BundleMotionsView {
-    const BundleMotionNode* nodes;  ///< (rows + 1) * (columns + 1); null: the camera is not calibrated
+    const BundleMotion* nodes;  ///< (rows + 1) * (columns + 1); null: the camera is not calibrated
+    const LandingDerivatives* derivatives;  ///< at the nodes
     int columns, rows;  ///< number of cells
     Vec2f first, cells_per_mm;  ///< film point of the first node; negative steps where the film's axis is reversed
     const std::uint8_t* defined;  ///< see CalibratedGeometry; null: defined everywhere
@@ -80,14 +93,25 @@ REALCAM_INLINE GridCell cell_of(const BundleMotionsView& view, Vec2f film) {
 
 }  // namespace bundle_motion_detail
 
+/// Motion of the bundle of a film point in a cell of the table.
+REALCAM_INLINE BundleMotion motion_in_cell(const BundleMotionsView& view, bundle_motion_detail::GridCell cell) {
+    const BundleMotion* const top = view.nodes + cell.index;
+    const BundleMotion* const bottom = top + view.columns + 1;
+    const float x = cell.x, y = cell.y, u = 1.0f - x, v = 1.0f - y;
+    const float weights[] = {v * u, v * x, y * u, y * x};
+    // Copies of whole nodes, because only these are loaded as vectors on a GPU. With indices in place of the pointers,
+    // gcc would vectorise over the lanes of a block, and gather each number by itself.
+    const BundleMotion corners[] = {top[0], top[1], bottom[0], bottom[1]};
+    BundleMotion motion;
+    for (int k = 0; k < BundleMotion::kNumbers; ++k)
+        motion.numbers[k] = weights[0] * corners[0].numbers[k] + weights[1] * corners[1].numbers[k] +
+                            weights[2] * corners[2].numbers[k] + weights[3] * corners[3].numbers[k];
+    return motion;
+}
+
 /// Motion of the bundle of a film point; that of the nearest one of the table beyond its border.
 REALCAM_INLINE BundleMotion bundle_motion(const BundleMotionsView& view, Vec2f film) {
-    using namespace bundle_motion_detail;
-    const GridCell cell = cell_of(view, film);
-    const auto at = [&](auto&& value_of) { return interpolated(view.nodes, view.columns + 1, cell, value_of); };
-    return {at([](const BundleMotionNode& node) { return node.rotation; }),
-            at([](const BundleMotionNode& node) { return node.foot; }),
-            at([](const BundleMotionNode& node) { return node.gain; })};
+    return motion_in_cell(view, bundle_motion_detail::cell_of(view, film));
 }
 
 /// True if the calibration has a ray at a film point. Beyond the picture's edges: as at the edge.
@@ -114,11 +138,11 @@ REALCAM_INLINE Vec3<T> rotated(Vec3<R> rotation, Vec3<T> v) {
 /// Moves a point of a lens's ray to where it is in front of the calibrated camera, and back.
 template <class T>
 REALCAM_INLINE Vec3<T> moved_point(const BundleMotionsView& view, const BundleMotion& motion, Vec3<T> point) {
-    return static_cast<Vec3<T>>(view.centre) + rotated(motion.rotation, point - static_cast<Vec3<T>>(motion.foot));
+    return static_cast<Vec3<T>>(view.centre) + rotated(motion.rotation(), point - static_cast<Vec3<T>>(motion.foot()));
 }
 template <class T>
 REALCAM_INLINE Vec3<T> point_before_motion(const BundleMotionsView& view, const BundleMotion& motion, Vec3<T> point) {
-    return static_cast<Vec3<T>>(motion.foot) + rotated(-motion.rotation, point - static_cast<Vec3<T>>(view.centre));
+    return static_cast<Vec3<T>>(motion.foot()) + rotated(-motion.rotation(), point - static_cast<Vec3<T>>(view.centre));
 }
 
 /// Film point, mm, whose chief ray has a direction in front of the calibrated camera: a unit vector. Beyond the table:
@@ -135,25 +159,15 @@ REALCAM_INLINE Vec2f film_point_seeing(const BundleMotionsView& view, Vec3f dire
             interpolated(view.positions, view.side, cell, [](Vec2f film) { return film.y; })};
 }
 
-/// Interpolated derivatives of BundleMotionNode.
-struct LandingDerivatives {
-    Vec2f by_x, by_y;
-
-    REALCAM_INLINE Vec2f of(Vec2f shift) const {
-        return {shift.x * by_x.x + shift.y * by_y.x, shift.x * by_x.y + shift.y * by_y.y};
-    }
-    /// Area on which light falls in the picture over that behind the lens.
-    REALCAM_INLINE float area() const { return std::fabs(by_x.x * by_y.y - by_x.y * by_y.x); }
-};
-
+/// Interpolated derivatives at a film point.
 REALCAM_INLINE LandingDerivatives landing_derivatives(const BundleMotionsView& view, Vec2f film) {
     using namespace bundle_motion_detail;
     const GridCell cell = cell_of(view, film);
-    const auto at = [&](auto&& value_of) { return interpolated(view.nodes, view.columns + 1, cell, value_of); };
-    return {{at([](const BundleMotionNode& node) { return node.by_x.x; }),
-             at([](const BundleMotionNode& node) { return node.by_x.y; })},
-            {at([](const BundleMotionNode& node) { return node.by_y.x; }),
-             at([](const BundleMotionNode& node) { return node.by_y.y; })}};
+    const auto at = [&](auto&& value_of) { return interpolated(view.derivatives, view.columns + 1, cell, value_of); };
+    return {{at([](const LandingDerivatives& node) { return node.by_x.x; }),
+             at([](const LandingDerivatives& node) { return node.by_x.y; })},
+            {at([](const LandingDerivatives& node) { return node.by_y.x; }),
+             at([](const LandingDerivatives& node) { return node.by_y.y; })}};
 }
 
 /// Film point at which light appears in the picture, if the lens, with the motion of the film point `about`, brings it

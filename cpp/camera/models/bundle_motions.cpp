@@ -45,7 +45,8 @@ Matrix2 landing_matrix(const Node& at, const Node (&along_x)[2], const Node (&al
 
 }  // namespace
 
-BundleMotions::BundleMotions(const Camera& camera, const CameraView& view) : geometry_(camera.geometry) {
+BundleMotions::BundleMotions(const Camera& camera, const CameraView& view, const PupilTracer& tracer)
+    : geometry_(camera.geometry) {
     const CalibratedGeometry& geometry = *geometry_;
     const Film& film = camera.film;
     const int columns = geometry.columns, rows = geometry.rows;
@@ -64,7 +65,7 @@ BundleMotions::BundleMotions(const Camera& camera, const CameraView& view) : geo
         return all[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns + 1) +
                    static_cast<std::size_t>(column)];
     };
-    for (int row = 0; row <= rows; ++row)
+    tracer.for_each(rows + 1, [&](int row) {
         for (int column = 0; column <= columns; ++column) {
             Node& node = node_at(column, row);
             const double x = coordinate(column, columns), y = coordinate(row, rows);
@@ -86,10 +87,14 @@ BundleMotions::BundleMotions(const Camera& camera, const CameraView& view) : geo
                                  "\"; expected a lens that sees this film with a more similar projection");
             node.direction = node.lens.direction;  // beyond what the picture shows
         }
+    });
+    const auto float2 = [](double x, double y) { return Vec2f{static_cast<float>(x), static_cast<float>(y)}; };
     const Vec3d centre_mm = centre_of_projection_mm(camera);
     const double cell_x = (1 + 2 * geometry.margin) * film.width_mm / columns,
                  cell_y = (1 + 2 * geometry.margin) * film.height_mm / rows;
-    for (int row = 0; row <= rows; ++row)
+    nodes_.resize(all.size());
+    derivatives_.resize(all.size());
+    tracer.for_each(rows + 1, [&](int row) {
         for (int column = 0; column <= columns; ++column) {
             const Node& node = node_at(column, row);
             const int left = std::max(column - 1, 0), right = std::min(column + 1, columns), top = std::max(row - 1, 0),
@@ -100,19 +105,20 @@ BundleMotions::BundleMotions(const Camera& camera, const CameraView& view) : geo
             const Matrix2 matrix = landing_matrix(node, along_x, along_y);
             // In cells, x and y may have different lengths.
             const double x_over_y = cell_x * (right - left) / (cell_y * (bottom - top));
-            BundleMotionNode& stored = nodes_.emplace_back();
-            stored.rotation = static_cast<Vec3f>(cross(node.lens.direction, node.direction));
-            stored.foot = static_cast<Vec3f>(0.001 * node.lens.foot);
-            stored.gain = geometry.gain.empty() ? 1.0f : geometry.gain[nodes_.size() - 1];
-            stored.by_x = {static_cast<float>(matrix.first.x), static_cast<float>(matrix.second.x / x_over_y)};
-            stored.by_y = {static_cast<float>(matrix.first.y * x_over_y), static_cast<float>(matrix.second.y)};
+            const auto index = static_cast<std::size_t>(&node - all.data());
+            const Vec3f rotation = static_cast<Vec3f>(cross(node.lens.direction, node.direction)),
+                        foot = static_cast<Vec3f>(0.001 * node.lens.foot);
+            const float gain = geometry.gain.empty() ? 1.0f : geometry.gain[index];
+            nodes_[index] = {{rotation.x, rotation.y, rotation.z, foot.x, foot.y, foot.z, gain, 0}};
+            derivatives_[index] = {float2(matrix.first.x, matrix.second.x / x_over_y),
+                                   float2(matrix.first.y * x_over_y, matrix.second.y)};
         }
+    });
     for (const Vec2f at : geometry.inverse.positions) {
         const Vec2<double> point = film_of(static_cast<double>(at.x), static_cast<double>(at.y));
-        positions_.push_back({static_cast<float>(point.x), static_cast<float>(point.y)});
+        positions_.push_back(float2(point.x, point.y));
     }
     const Vec2<double> first = film_of(-geometry.margin, -geometry.margin), mask_first = film_of(0, 0);
-    const auto float2 = [](double x, double y) { return Vec2f{static_cast<float>(x), static_cast<float>(y)}; };
     view_.columns = columns;
     view_.rows = rows;
     view_.first = float2(first.x, first.y);
@@ -129,6 +135,7 @@ BundleMotions::BundleMotions(const Camera& camera, const CameraView& view) : geo
 BundleMotionsView BundleMotions::view() const {
     BundleMotionsView view = view_;
     view.nodes = nodes_.data();
+    view.derivatives = derivatives_.data();
     view.defined = geometry_->mask.cells.empty() ? nullptr : geometry_->mask.cells.data();
     view.positions = positions_.data();
     return view;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "../../optics/pupil/pupil_tracer.hpp"
 #include "../film/camera.hpp"
 #include "bundle_motion_view.hpp"
 
@@ -13,9 +14,9 @@ namespace REALCAM_NAMESPACE {
 /// view.
 class BundleMotions {
 public:
-    /// `camera`: has a geometry; `view`: its view without motions. Throws InputError if the geometry differs from that
-    /// of the lens by more than kMaxAngle.
-    BundleMotions(const Camera& camera, const CameraView& view);
+    /// `camera`: has a geometry; `view`: its view without motions; `tracer`: has the parallel loop. Throws InputError
+    /// if the geometry differs from that of the lens by more than kMaxAngle.
+    BundleMotions(const Camera& camera, const CameraView& view, const PupilTracer& tracer);
 
     BundleMotionsView view() const;
 
@@ -25,7 +26,8 @@ public:
 
 private:
     BundleMotionsView view_{};  ///< without pointers
-    std::vector<BundleMotionNode> nodes_;
+    std::vector<BundleMotion> nodes_;
+    std::vector<LandingDerivatives> derivatives_;
     std::vector<Vec2f> positions_;
     std::shared_ptr<const CalibratedGeometry> geometry_;  ///< owns the mask
 };
@@ -46,8 +48,8 @@ std::optional<Vec2<double>> calibrated_film_point(const BundleMotionsView& view,
     Vec2<double> film = {static_cast<double>(start.x), static_cast<double>(start.y)};
     for (int i = 0; i < kMaxIterations; ++i) {
         const BundleMotion motion = bundle_motion(view, in_float(film));
-        const std::optional<Vec2<double>> landing =
-            lens_film_point(is_direction ? rotated(-motion.rotation, point) : point_before_motion(view, motion, point));
+        const std::optional<Vec2<double>> landing = lens_film_point(
+            is_direction ? rotated(-motion.rotation(), point) : point_before_motion(view, motion, point));
         if (!landing) return std::nullopt;
         const Vec2<double> off = {landing->x - film.x, landing->y - film.y};
         const Vec2f shift = landing_derivatives(view, in_float(film)).of(in_float(off));

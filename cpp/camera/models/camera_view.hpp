@@ -135,7 +135,7 @@ REALCAM_INLINE Vec3f from_camera_axes(const CameraFrame& camera, Vec3f v) {
 /// calibrated camera does.
 REALCAM_INLINE CameraFrame moved_frame(const BundleMotionsView& view, const BundleMotion& motion,
                                        const CameraFrame& camera) {
-    const auto axis = [&](Vec3f unit) { return from_camera_axes(camera, rotated(motion.rotation, unit)); };
+    const auto axis = [&](Vec3f unit) { return from_camera_axes(camera, rotated(motion.rotation(), unit)); };
     return {camera.position + from_camera_axes(camera, moved_point(view, motion, Vec3f{0, 0, 0})), axis({1, 0, 0}),
             axis({0, 1, 0}), axis({0, 0, 1})};
 }
@@ -186,6 +186,7 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     move(view.keys, view.key_count);
     move(view.map.nodes, view.map.count);
     move(view.bundles.nodes, (view.bundles.columns + 1) * (view.bundles.rows + 1));
+    move(view.bundles.derivatives, (view.bundles.columns + 1) * (view.bundles.rows + 1));
     move(view.bundles.defined, view.bundles.mask_columns * view.bundles.mask_rows);
     move(view.bundles.positions, view.bundles.side * view.bundles.side);
     move(view.polynomial.coefficients, 2 * LensPolynomialView::kVectors * view.polynomial.terms);

@@ -150,7 +150,7 @@ REALCAM_INLINE void move_ray(const CameraView& camera, const BundleMotion& motio
     const Vec3f origin = to_camera_axes(camera, rays.origin[lane] - camera.position),
                 direction = to_camera_axes(camera, rays.direction[lane]);
     rays.origin.set(lane, camera.position + from_camera_axes(camera, moved_point(camera.bundles, motion, origin)));
-    rays.direction.set(lane, from_camera_axes(camera, rotated(motion.rotation, direction)));
+    rays.direction.set(lane, from_camera_axes(camera, rotated(motion.rotation(), direction)));
 }
 
 /// Moves the rays of a calibrated camera with the bundles of their film points, and weights them by the gain there.
@@ -159,13 +159,26 @@ template <int N, class Points>
 REALCAM_HD inline void move_bundles(const CameraView& camera, const Points& film, CameraRays<N>& rays) {
     const BundleMotionsView& bundles = camera.bundles;
     if (!bundles.nodes) return;
+    // Loops of their own, because each is vector code in another way: over the lanes, or over the numbers of a motion.
+    Lanes<std::int32_t, N> index;
+    Vec2Lanes<float, N> within;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        const Vec2f at = film[i];
-        const BundleMotion motion = bundle_motion(bundles, at);
-        const bool defined = is_defined(bundles, at);
-        move_ray(camera, motion, i, rays);
-        rays.weight[i] = select(defined, motion.gain * rays.weight[i], 0.0f);
+        const bundle_motion_detail::GridCell cell = bundle_motion_detail::cell_of(bundles, film[i]);
+        index[i] = cell.index;
+        within.set(i, {cell.x, cell.y});
+    }
+    BundleMotion motions[N];
+    for (int i = 0; i < N; ++i) motions[i] = motion_in_cell(bundles, {index[i], within.x[i], within.y[i]});
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        move_ray(camera, motions[i], i, rays);
+        rays.weight[i] *= motions[i].gain();
+    }
+    if (!bundles.defined) return;
+    for (int i = 0; i < N; ++i) {
+        const bool defined = is_defined(bundles, film[i]);
+        rays.weight[i] = select(defined, rays.weight[i], 0.0f);
         rays.passed[i] = select(defined, rays.passed[i], 0);
     }
 }

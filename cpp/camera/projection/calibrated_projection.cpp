@@ -27,10 +27,10 @@ std::optional<FilmProjection> CalibratedProjection::ray(Vec2<double> film) const
     const std::optional<FilmProjection> ray = lens_->ray(film);
     if (!ray || !is_defined(view, at)) return std::nullopt;
     const BundleMotion motion = bundle_motion(view, at);
-    const float central_gain = bundle_motion(view, {0, 0}).gain;
+    const float central_gain = bundle_motion(view, {0, 0}).gain();
     return FilmProjection{kMetre_mm * moved_point(view, motion, (1 / kMetre_mm) * ray->origin),
-                          rotated(motion.rotation, ray->direction),
-                          ray->light * static_cast<double>(motion.gain / central_gain)};
+                          rotated(motion.rotation(), ray->direction),
+                          ray->light * static_cast<double>(motion.gain() / central_gain)};
 }
 
 std::optional<Vec2<double>> CalibratedProjection::project(Vec3d point) const {

@@ -61,12 +61,10 @@ CoatingLayer read_layer(const TomlTable& layer, const std::optional<TomlTable>& 
 
 /// Reads the layers of a coating; empty without the key "layers".
 std::vector<CoatingLayer> read_layers(const TomlTable& table, const std::optional<TomlTable>& glasses) {
-    const toml::node* node = table.find("layers");
     const auto design = table.number("design_wavelength_nm");
-    if (design && !node)
-        table.fail("\"design_wavelength_nm\" is for layers, and there are none", table.find("design_wavelength_nm"));
     if (design && !(*design >= 100 && *design <= 20000))
         table.fail("\"design_wavelength_nm\" must lie between 100 and 20000", table.find("design_wavelength_nm"));
+    const toml::node* node = table.find("layers");
     std::vector<CoatingLayer> layers;
     if (!node) return layers;
     const toml::array* list = node->as_array();
@@ -97,6 +95,8 @@ Coating read_coating(const TomlTable& table, const std::string& name, const std:
         table.fail(
             "a coating needs \"layers\", or a mirror's \"metal\" with or without \"layers\", or a mirror's "
             "\"reflectance\"");
+    if (const toml::node* node = table.find("design_wavelength_nm"); node && !layers)
+        table.fail("\"design_wavelength_nm\" is for layers, and there are none", node);
     Coating coating = reflectance ? stated_reflectance(*reflectance, name)
                       : metal     ? metal_mirror(read_metal(table), read_layers(table, glasses), name)
                                   : layered_coating(read_layers(table, glasses), name);

@@ -155,8 +155,7 @@ REALCAM_HD inline bool replace_ended(TangentRays<N>& rays, Vec3Lanes<double, N>&
 }
 
 /// Traces N rays, which are in a surface's frame, through this surface, which blocks none of them. `media`: policy of
-/// trace_lens for this surface. Not REALCAM_INLINE: GCC's `flatten` does not reach the calls of
-/// functions that are always inlined.
+/// trace_lens for this surface. Not REALCAM_INLINE: GCC's `flatten` stops at functions that are always inlined.
 template <LensKind kind, int N, class Media>
 REALCAM_HD inline void cross_surface(const TangentSurface& surface, const Media& media, LensRays<double, N>& rays) {
     // The directions of the blades, of which there are none, are not set: that would be the largest store of a GPU's

@@ -120,7 +120,7 @@ REALCAM_INLINE void move_ghosts(const CameraView& camera, CameraRays<N>& rays) {
         Vec3f seen = direction;
         for (int k = 0; k < kIterations; ++k) {
             motion = bundle_motion(bundles, film_point_seeing(bundles, seen));
-            seen = rotated(motion.rotation, direction);
+            seen = rotated(motion.rotation(), direction);
         }
         move_ray(camera, motion, i, rays);
     }

@@ -268,7 +268,7 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
             const PictureLanding landing = picture_landing(camera.bundles, samples.chief_film[i], film);
             film = landing.film;
             irradiance *=
-                is_defined(camera.bundles, film) ? landing.area * bundle_motion(camera.bundles, film).gain : 0;
+                is_defined(camera.bundles, film) ? landing.area * bundle_motion(camera.bundles, film).gain() : 0;
         }
         if constexpr (has_wavelengths) {
             if (ghosts.light != GhostLight::of_lights && camera.effects.diffraction) {

@@ -84,38 +84,40 @@ def fit_pictures(
     if not blocks or any(wanted.shape[1] % block or wanted.shape[2] % block for block in blocks):
         raise InputError(f"blocks must divide pictures of {wanted.shape[2]} x {wanted.shape[1]} pixels; found {blocks}")
     means, deviations = (values, np.inf) if prior is None else (np.asarray(part, float) for part in prior)
+    of_prior = np.broadcast_to(units / deviations, values.shape)
     evaluations = 0
     for block in blocks:
         noise = np.sqrt(_block_means(spread, block)) / block
 
         def residuals(at: Doubles, block: int = block, noise: Doubles = noise) -> Doubles:
-            """Of the pixels, then those of the prior."""
+            """Residuals of the pixels, followed by those of the prior."""
             nonlocal evaluations
             evaluations += 1
             pixels = _block_means(np.asarray(pictures_of(at, block), float) - wanted, block) / noise
             return np.concatenate([pixels.ravel(), (at - means) / deviations])
 
         def jacobian(at: Doubles, block: int = block, noise: Doubles = noise) -> Doubles:
-            """(residuals, P), by the values in units of their scale."""
+            """(pixels, P), by the values in units of their scale."""
             nonlocal seed
             seed += 1
             found = [
                 _block_means(np.asarray(d, float), block) / noise for d in np.asarray(derivatives_of(at, block, seed))
             ]
-            rows = np.vstack([np.reshape(found, (len(at), -1)).T, np.diag(np.broadcast_to(1 / deviations, at.shape))])
-            return np.asarray(rows * units)
+            return np.asarray(np.reshape(found, (len(at), -1)).T * units)
 
         damping, now = 1.0, residuals(values)
         for _ in range(steps):
             first, second = jacobian(values), jacobian(values)
-            information = (first.T @ second + second.T @ first) / 2
+            # Noise can make small eigenvalues negative.
+            strengths, axes = np.linalg.eigh((first.T @ second + second.T @ first) / 2)
+            information = axes @ np.diag(np.maximum(strengths, 0)) @ axes.T + np.diag(of_prior**2)
             strengths, axes = np.linalg.eigh(information)
-            slope = axes.T @ ((first + second).T @ now) / 2
+            by_pixels, by_prior = now[: -len(values)], now[-len(values) :]
+            slope = axes.T @ ((first + second).T @ by_pixels / 2 + of_prior * by_prior)
             is_better, change = False, np.zeros_like(slope)
             for _ in range(20):
-                # Noise can make small eigenvalues negative.
-                change = slope / (np.abs(strengths) + damping)
-                if (np.abs(strengths) * change**2).sum() < SHORTEST**2:
+                change = slope / (strengths + damping)
+                if (strengths * change**2).sum() < SHORTEST**2:
                     break
                 if np.linalg.norm(change) < LONGEST:
                     there = np.clip(values - units * (axes @ change), *bounds)

@@ -54,7 +54,7 @@ def calibration(
     """Returns the calibration that a camera with this lens would have: a camera model fitted to the lens's rays, at its
     focus and f-number.
 
-    film_mm: (width, height), and resolution: (columns, rows); None: see Film.for_lens. model: see rc.fit_camera_model;
+    film_mm: (width, height), and resolution: (columns, rows); None: see Film.for_lens. model: see fit_camera_model;
     None: "opencv5" if it fits to 0.05 pixels RMS, and otherwise the better one of it and "fisheye". distance_m,
     through: see fit_camera_model.
     The result can be saved in all formats of docs/calibration.md. Its rms_px and max_px say how well the model fits.

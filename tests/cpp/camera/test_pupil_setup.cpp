@@ -134,6 +134,14 @@ TEST_CASE("a camera of the same lens and film takes over the last one's pupil, a
     last.make(camera, counting(blocks));
     CHECK(blocks == once);
 
+    // The planner takes pictures of other films and with other models between two pictures of a camera.
+    Camera probe = camera;
+    probe.model = CameraModel::pinhole;
+    probe.film.width_mm *= 0.5;
+    last.make(probe, counting(blocks));
+    last.make(camera, counting(blocks));
+    CHECK(blocks == once);
+
     camera.lens = stopped_down(camera.lens, 16);
     const auto stopped = last.make(camera, counting(blocks));
     CHECK(blocks > once);

@@ -46,6 +46,19 @@ def test_chief_rays_have_the_directions_of_the_calibration(model: str) -> None:
     np.testing.assert_allclose(camera.camera_matrix, made_from.camera_matrix, rtol=1e-9)
 
 
+def test_rays_that_were_traced_before_are_moved_like_those_that_are_traced_now() -> None:
+    pose = {"position": (1, 2, 3), "look_at": (2, 2, 1)}
+    camera = calibration().camera(LENS, **pose)
+    pixels = np.random.default_rng(4).random((50, 2)) * SIZE
+    lens_rays = rc._core.traced_chief_rays(rc.Camera(LENS, film=camera.film, **pose), pixels)
+    for moved, traced in zip(
+        rc._core.traced_chief_rays(camera, pixels, lens_rays), rc._core.traced_chief_rays(camera, pixels), strict=True
+    ):
+        np.testing.assert_allclose(moved, traced, rtol=0, atol=1e-12)  # metres and cosines, in doubles
+    with pytest.raises(rc.InputError, match="a ray for each pixel"):
+        rc._core.traced_chief_rays(camera, pixels[1:], lens_rays)
+
+
 def test_a_fisheye_of_190_degrees() -> None:
     made_from = fisheye()
     camera = made_from.camera("fisheye-6mm-220deg", film_width_mm=31.0)

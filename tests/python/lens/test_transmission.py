@@ -373,7 +373,7 @@ clear_semi_diameter_mm = 5.0
         ("coating", "reflectance = 1.5", r":17: the reflectance of a mirror must lie"),
         ("coating", 'metal = "silver"\nreflectance = 0.5', r":17: a coating needs"),
         ("coating", "reflectance = 0.9\ndesign_wavelength_nm = 500", r':19: "design_wavelength_nm" is for layers'),
-        ("coating", 'layers = []\nmetal_label = "x"', r':19: "metal_label" is for a "metal"'),
+        ("coating", 'layers = [{ material = 1.4, thickness_nm = 9 }]\nmetal_label = "x"', r':19: "metal_label" is for a "metal"'),
         ("coating", 'metal = "sliver"', r':18: unknown metal .*did you mean "silver"'),
         ("coating", "metal = [[500, 1, 1], [400, 1, 1]]", r":17: the wavelengths of the metal must rise"),
         ("coating", 'metal = [["a", 1, 1]]', r":18: each number of a point must be a finite number"),

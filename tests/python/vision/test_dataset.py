@@ -175,13 +175,13 @@ def test_a_camera_stands_outside_of_all_bodies() -> None:
 
 
 def test_a_recipe_that_has_made_no_picture_may_be_mended(tmp_path: Path) -> None:
-    recipe = dataclasses.replace(Recipe(), count=1, size=(60, 40), spp=1, lenses=("no such lens",))
-    with pytest.raises(rc.InputError, match=r"picture \d: .*no such lens"):
+    recipe = dataclasses.replace(Recipe(), count=1, size=(60, 40), spp=1, models={"cup": "no-such-file.obj"})
+    with pytest.raises(rc.InputError, match=r"picture \d: .*no-such-file.obj"):
         make(recipe, tmp_path / "out", Here(), device="cpu")
     with pytest.raises(rc.InputError, match="this has no shards"):
         list(samples(tmp_path))
-    make(dataclasses.replace(recipe, lenses=("tessar-50mm",)), tmp_path / "out", Here(), device="cpu")
-    with pytest.raises(rc.InputError, match=r"another recipe \(lenses\)"):
+    make(dataclasses.replace(recipe, models={}), tmp_path / "out", Here(), device="cpu")
+    with pytest.raises(rc.InputError, match=r"another recipe \(models\)"):
         make(recipe, tmp_path / "out", Here(), device="cpu")
 
 

@@ -11,7 +11,7 @@ from ..._core import Camera, Film, InputError, Lens
 from ..arrays import rows_of
 from .calibrated_picture import CalibratedPicture
 from .lens_choice import chosen_lens
-from .measuring import geometry_error
+from .measuring import geometry_error, lens_chief_rays
 from .sampled_geometry import defined_mask, precise_mask, sampled_geometry
 from .vignetting import Vignetting, gain_of
 
@@ -39,10 +39,10 @@ def calibrated_camera(
     chosen = chosen.with_rings(f_number=None if lens == "auto" else f_number, focus_m=focus_m)
     gain = None if vignetting is None else gain_of(vignetting, calibration, Camera(chosen, film=film))
     camera = Camera(chosen, film=film, **settings)
-    mask = defined_mask(calibration)
+    mask, lens_rays = defined_mask(calibration), lens_chief_rays(calibration, camera)
     for columns in COLUMNS:
         camera = camera.replace(geometry=sampled_geometry(calibration, film, columns, mask, gain))
-        error_px = geometry_error(calibration, camera).everywhere_px
+        error_px = geometry_error(calibration, camera, lens_rays).everywhere_px
         if error_px <= PRECISION_PX:
             break
     if error_px > LARGEST_ERROR_PX:

@@ -32,9 +32,19 @@ class GeometryError:
     rotation_deg: float
 
 
-def geometry_error(calibration: CalibratedPicture, camera: Camera) -> GeometryError:
+Rays = tuple[Array, Array]  # origins and directions, (N, 3)
+
+
+def lens_chief_rays(calibration: CalibratedPicture, camera: Camera) -> Rays:
+    """Traces the chief rays of a camera's lens at the points of geometry_error, in the camera's axes."""
+    lens = Camera(camera.ray_pairs or camera.lens, film=camera.film, model=camera.model)
+    return traced_chief_rays(lens, _pixels(calibration))
+
+
+def geometry_error(calibration: CalibratedPicture, camera: Camera, lens_rays: Rays | None = None) -> GeometryError:
     """Measures a calibrated camera at points drawn over its picture, 0.5 m, 5 m and infinitely far away.
 
+    lens_rays: those of lens_chief_rays for the same lens and film; None: traced here.
     Raises InputError if the camera's picture has another size, or no chief ray.
     """
     if camera.film.resolution != calibration.size:
@@ -43,19 +53,18 @@ def geometry_error(calibration: CalibratedPicture, camera: Camera) -> GeometryEr
             f"{camera.film.resolution[0]} x {camera.film.resolution[1]}"
         )
     still = camera.replace(position=(0, 0, 0), look_at=(0, 0, -1), up=(0, 1, 0))
-    size = np.array(calibration.size, dtype=float)
-    pixels = np.random.default_rng(20130712).random((_POINTS, 2)) * size
+    pixels, size = _pixels(calibration), np.array(calibration.size, dtype=float)
     expected, status = calibration.ray(pixels)
-    origins, directions = traced_chief_rays(still, pixels)
+    lens_origins, lens_directions = lens_rays or lens_chief_rays(calibration, camera)
+    origins, directions = traced_chief_rays(still, pixels, (lens_origins, lens_directions))
     used = (status == PointStatus.OK) & np.isfinite(directions[:, 0])
     if not used.any():
         raise InputError("no pixel of the camera has a chief ray")
     pixels, origins, directions, expected = pixels[used], origins[used], directions[used], expected[used]
+    lens_origins, lens_directions = lens_origins[used], lens_directions[used]
     centre = np.array(still.entrance_pupil_position_m)
     errors = np.stack([_errors(calibration, pixels, origins - centre, directions, d) for d in DISTANCES_M])
     is_middle = (np.abs(pixels / size - 0.5) <= _MIDDLE / 2).all(axis=1)
-    lens = Camera(still.lens, film=still.film, model=still.model)
-    lens_origins, lens_directions = traced_chief_rays(lens, pixels)
     cosines = (lens_directions * expected * (1, -1, -1)).sum(axis=1)
     return GeometryError(
         middle_px=float(errors[:, is_middle].max()),
@@ -64,6 +73,12 @@ def geometry_error(calibration: CalibratedPicture, camera: Camera) -> GeometryEr
         pupil_shift_mm=float(1000 * np.linalg.norm(lens_origins - centre, axis=1).max()),
         rotation_deg=float(np.degrees(np.arccos(np.clip(cosines.min(), -1, 1)))),
     )
+
+
+def _pixels(calibration: CalibratedPicture) -> Array:
+    """Returns the pixels (N, 2) at which the geometry is measured."""
+    pixels: Array = np.random.default_rng(20130712).random((_POINTS, 2)) * calibration.size
+    return pixels
 
 
 def _errors(
