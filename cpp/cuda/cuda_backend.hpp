@@ -5,6 +5,7 @@
 #include "rays/bench_kernels.hpp"
 #include "rays/cuda_rays.hpp"
 #include "rays/ray_arrays.hpp"
+#include "session/cuda_gradient.hpp"
 #include "session/cuda_session.hpp"
 
 namespace realcam {
@@ -17,6 +18,7 @@ struct CudaBackend {
     decltype(&realcam::why_no_cuda_device) why_no_cuda_device;
     decltype(&realcam::cuda_device) cuda_device;
     decltype(&realcam::make_cuda_session) make_cuda_session;
+    decltype(&realcam::make_cuda_gradient) make_cuda_gradient;
     decltype(&realcam::trace_rays_on_gpu) trace_rays_on_gpu;
     decltype(&realcam::trace_arrays) trace_arrays;
     decltype(&realcam::generate_ray_arrays) generate_ray_arrays;

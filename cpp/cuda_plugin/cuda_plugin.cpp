@@ -13,6 +13,7 @@ constexpr CudaBackend kBackend = {
     .why_no_cuda_device = why_no_cuda_device,
     .cuda_device = cuda_device,
     .make_cuda_session = make_cuda_session,
+    .make_cuda_gradient = make_cuda_gradient,
     .trace_rays_on_gpu = trace_rays_on_gpu,
     .trace_arrays = trace_arrays,
     .generate_ray_arrays = generate_ray_arrays,

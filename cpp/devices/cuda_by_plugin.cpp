@@ -85,6 +85,11 @@ CudaDevice cuda_device(int ordinal) {
 std::unique_ptr<Session> make_cuda_session(const std::vector<int>& ordinals, PupilTracer tracer) {
     return backend().make_cuda_session(ordinals, std::move(tracer));
 }
+std::unique_ptr<CameraGradient> make_cuda_gradient(int ordinal, const Assembly& scene, const Camera& camera,
+                                                   const RenderSettings& settings, std::vector<LensVariable> variables,
+                                                   const PupilTracer& tracer) {
+    return backend().make_cuda_gradient(ordinal, scene, camera, settings, std::move(variables), tracer);
+}
 void trace_rays_on_gpu(int ordinal, const LensSystem& lens, LightDirection direction, double wavelength_nm,
                        Precision precision, int surface_count, std::int64_t count, const double* origins,
                        const double* directions, const TracedRays& out) {

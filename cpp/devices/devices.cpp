@@ -4,9 +4,11 @@
 #include <charconv>
 
 #include "../cuda/device/cuda_devices.hpp"
+#include "../cuda/session/cuda_gradient.hpp"
 #include "../cuda/session/cuda_session.hpp"
 #include "../embree/embree_session.hpp"
 #include "../embree/lens_rays.hpp"
+#include "../embree/picture_gradient.hpp"
 #include "../error.hpp"
 #include "cuda_plugin.hpp"
 
@@ -95,6 +97,25 @@ std::unique_ptr<Session> make_live_session(const std::string& device, const Devi
     if (device == "cpu") return make_embree_session();
     if (device == "auto") return make_best_session(notice);
     return make_gpu_session({single_gpu(device, "frames are taken")});
+}
+
+std::unique_ptr<CameraGradient> make_gradient(const std::string& device, const Assembly& scene, const Camera& camera,
+                                              const RenderSettings& settings, std::vector<LensVariable> variables) {
+    const auto on_cpu = [&] {
+        return std::make_unique<PictureGradient>(scene, camera, settings, std::move(variables));
+    };
+    const auto on_gpu = [&](const std::string& name) {
+        return make_cuda_gradient(single_gpu(name, "derivatives are computed"), scene, camera, settings, variables,
+                                  fast_pupil_tracer());
+    };
+    if (device == "cpu") return on_cpu();
+    if (device != "auto") return on_gpu(device);
+    if (!gpu_differentiates(camera.lens) || cuda_devices().empty()) return on_cpu();
+    try {
+        return on_gpu("cuda");
+    } catch (const UnsupportedGpu&) {
+        return on_cpu();
+    }
 }
 
 std::optional<int> gpu_for_rays(const std::string& device) {

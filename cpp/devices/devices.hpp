@@ -7,7 +7,12 @@
 
 namespace realcam {
 
+class CameraGradient;
 class Session;
+struct Assembly;
+struct Camera;
+struct LensVariable;
+struct RenderSettings;
 
 /// Device to render on.
 struct Device {
@@ -29,6 +34,12 @@ std::unique_ptr<Session> make_session(const std::string& device, const DeviceNot
 /// Opens a session on a single device, for live frames: "cuda" is the first GPU, and several GPUs are an InputError.
 /// Otherwise as make_session.
 std::unique_ptr<Session> make_live_session(const std::string& device, const DeviceNotice& notice);
+
+/// Prepares the derivatives of a picture on a single device: "cuda" is the first GPU, and several GPUs are an
+/// InputError. "auto": the first GPU if there is one that this build supports and it supports the lens, else the CPU.
+/// See make_session for other names and for errors, and CameraGradient for the other parameters.
+std::unique_ptr<CameraGradient> make_gradient(const std::string& device, const Assembly& scene, const Camera& camera,
+                                              const RenderSettings& settings, std::vector<LensVariable> variables);
 
 /// Returns the ordinal of the GPU on which a device name lets arrays of rays be traced, or std::nullopt for the CPU.
 /// "cuda" is the first GPU, and several GPUs are an InputError; see make_session for other names and for errors.

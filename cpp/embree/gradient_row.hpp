@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <numbers>
 #include <vector>
 
 #include "../render/gradients/film_radiance.hpp"
@@ -32,9 +31,8 @@ struct PictureGradient::RayBlock {
     int count = 0;
 
     /// Adds a ray at the film.
-    void add(const SampleLight& light, Vec3d origin, Vec3d direction) {
-        rays.origin.set(count, origin);
-        rays.direction.set(count, direction);
+    void add(const SampleLight& light, const OutlineLens& lens, Vec3f origin, Vec3f direction) {
+        set_film_ray(lens, origin, direction, rays, count);
         rays.direction_tangent.set(count, {0, 0, 0});
         variable[count] = light.variable;
         lights[count++] = light;
@@ -51,8 +49,7 @@ struct PictureGradient::RayBlock {
     }
     /// Sets the tangent of a ray by the light's direction cosines at the film, which are opposite to the ray's.
     void set_tangent(int lane, Vec2d w) {
-        const Vec3d p = rays.direction[lane];
-        rays.direction_tangent.set(lane, {-w.x, -w.y, (p.x * w.x + p.y * w.y) / p.z});
+        rays.direction_tangent.set(lane, tangent_of_cosines(rays.direction[lane], {-w.x, -w.y}));
     }
 };
 
@@ -95,10 +92,7 @@ public:
         FilmSamples<kLanes> film;
         PathResults<kLanes> results;
         for_blocks(samples_.spp, samples_.seed, block, [&](int) {
-            for (int i = 0; i < kLanes; ++i) {
-                film.mirrored[i] = samples_.pairs ? static_cast<std::int32_t>(block.sample[i] & 1u) : 0;
-                if (samples_.pairs) block.sample[i] >>= 1;
-            }
+            for (int i = 0; i < kLanes; ++i) film.mirrored[i] = samples_.pairs ? pair_sample(block, i) : 0;
             realcam_gradient_block request = request_for(block);
             request.film = &film;
             kernels().sample_film(&request);
@@ -106,7 +100,7 @@ public:
             for (int i = 0; i < kLanes; ++i)
                 if (film.rays.passed[i])
                     f(i,
-                      SampleLight{in_picture(film.pixel[i]),
+                      SampleLight{of_.film_.in_picture(film.pixel[i]),
                                   on_film(results.irradiance[i], film.wavelengths.cell_position[i]),
                                   film.rays.weight[i], film.variable[i]},
                       film);
@@ -117,8 +111,7 @@ public:
     template <class F>
     void for_outline_samples(F&& f) {
         SampleBlock<kLanes> block;
-        constexpr std::uint32_t kSalt = 0x6f75746cu;  // samples of the outline are independent of those of the film
-        for_blocks(samples_.outline_spp, hash32(samples_.seed, kSalt), block, [&](int used) {
+        for_blocks(samples_.outline_spp, samples_.outline_seed(), block, [&](int used) {
             const PixelPoints<kLanes> film(of_.view_, block);
             const LaneNumbers<kLanes> u(block, dimension::pupil);
             FilmSamples<kLanes> samples;
@@ -143,11 +136,6 @@ private:
         OutlinePoint point;
     };
 
-    Vec2f in_picture(Vec2f pixel) const {
-        const auto margin = static_cast<float>(of_.margin_);
-        return {pixel.x - margin, pixel.y - margin};
-    }
-
     /// Colour on the film of the irradiance of a sample with a wavelength; without dispersion, the irradiance itself.
     Color on_film(Color irradiance, float cell_position) const {
         if (!of_.view_.effects.dispersion || samples_.uniform) return irradiance;
@@ -157,21 +145,12 @@ private:
     /// Calls f(number of lanes in use) for blocks of samples of the row's pixels.
     template <class F>
     void for_blocks(int spp, std::uint32_t seed, SampleBlock<kLanes>& block, F&& f) {
-        const int width = of_.camera_.film.width, height = of_.camera_.film.height;
         const std::int64_t count = std::int64_t{of_.view_.width} * spp;
         for (std::int64_t first = 0; first < count; first += kLanes) {
             const int used = static_cast<int>(std::min<std::int64_t>(kLanes, count - first));
             for (int i = 0; i < kLanes; ++i) {
-                const std::int64_t sample = first + (i < used ? i : 0);
-                const int column = static_cast<int>(sample / spp), x = column - of_.margin_, y = row_ - of_.margin_;
-                const bool inside = x >= 0 && x < width && y >= 0 && y < height;
-                // Pixels of the picture have its random numbers; those beyond its border have others.
-                const int index = inside ? y * width + x : width * height + row_ * of_.view_.width + column;
-                block.column[i] = column;
-                block.row[i] = row_;
+                of_.film_.set_sample(block, i, row_, first + (i < used ? i : 0), spp, seed);
                 block.used[i] = i < used;
-                block.stream[i] = pixel_stream(index, seed);
-                block.sample[i] = static_cast<std::uint32_t>(sample % spp);
             }
             f(used);
         }
@@ -196,18 +175,18 @@ private:
     /// Sends lines from the centres of the pupil's boxes in random directions.
     void find_edges(const SampleBlock<kLanes>& block, const PixelPoints<kLanes>& film, const LaneNumbers<kLanes>& u,
                     const FilmSamples<kLanes>& samples, int first, int used, std::vector<Edge>& edges) {
-        constexpr double kEnd = 1.6;  // in half-widths of the box, beyond its corners
+        PupilLine from_centre[kRays];
         DirectionLine lines[kRays];
-        double areas[kRays];
         float variable[kRays];
         for (int i = 0; i < kRays; ++i) {
             const int lane = std::min(first + i, used - 1);
+            from_centre[i] = pupil_line(of_.view_, film[lane], u[lane].x);
+            lines[i] = from_centre[i].line;
             variable[i] = samples.variable[lane];
-            lines[i] = line_of(film[lane], u[lane].x, areas[i]);
         }
         OutlinePoint points[OutlineRays::kMostPoints][kRays];
         const WavelengthsInDouble wavelengths = of_.wavelengths(variable);
-        unexplained += of_.outline_.find(of_.path_, lines, kEnd, of_.if_dispersed(wavelengths), points);
+        unexplained += of_.outline_.find(of_.path_, lines, PupilLine::kEnd, of_.if_dispersed(wavelengths), points);
         for (const auto& lanes : points)
             for (int i = 0; i < kRays && first + i < used; ++i) {
                 const OutlinePoint& point = lanes[i];
@@ -216,29 +195,10 @@ private:
                 const Vec2f offset = film.u[lane];
                 const Vec2f pixel = {static_cast<float>(block.column[lane]) + offset.x,
                                      static_cast<float>(block.row[lane]) + offset.y};
-                edges.push_back({lane, in_picture(pixel),
-                                 2 * std::numbers::pi * areas[i] * point.t * point.inverse_speed, variable[i],
+                edges.push_back({lane, of_.film_.in_picture(pixel), from_centre[i].weight(point), variable[i],
                                  samples.wavelengths.cell_position[lane], lines[i], point});
             }
         edge_count += std::min(used - first, kRays);
-    }
-
-    /// Returns the line from the centre of the pupil's box at a film point, and the area of the box's quarter.
-    DirectionLine line_of(Vec2f film, float u, double& area) const {
-        const CameraView& view = of_.view_;
-        return view.pupil_grid.nodes ? line_in(PupilLookup(view.pupil_grid, film.x, film.y), film, u, area)
-                                     : line_in(PupilLookup(view.pupil, film.x, film.y), film, u, area);
-    }
-    template <class Map>
-    static DirectionLine line_in(const PupilLookup<Map>& pupil, Vec2f film, float u, double& area) {
-        const double angle = 2 * std::numbers::pi * static_cast<double>(u);
-        const Vec2f centre = pupil.to_film(pupil.from_box({0, 0}));
-        const Vec2f step = pupil.to_film({pupil.box.half_width * static_cast<float>(std::cos(angle)),
-                                          pupil.box.half_height * static_cast<float>(std::sin(angle))});
-        area = static_cast<double>(pupil.box.half_width) * static_cast<double>(pupil.box.half_height);
-        const auto vector = [](Vec2f v) { return Vec2d{static_cast<double>(v.x), static_cast<double>(v.y)}; };
-        const bool lit = pupil.may_be_lit();
-        return {vector(film), vector(centre), lit ? vector(step) : Vec2d{0, 0}};
     }
 
     /// Traces the paths of `count` edges, and calls f for blocks of kRays.
@@ -255,13 +215,7 @@ private:
             block.column[at] = film_block.column[lane], block.row[at] = film_block.row[lane];
             block.stream[at] = film_block.stream[lane], block.sample[at] = film_block.sample[lane];
             block.used[at] = i < count;
-            const Vec3d o = edge.point.origin;
-            const Vec3d from_vertex = {o.x, o.y, o.z + 1000 * static_cast<double>(of_.view_.front_vertex_m)};
-            set_camera_ray(
-                of_.view_, rays, at,
-                {static_cast<Vec3f>(from_vertex), static_cast<Vec3f>(normalized(edge.point.direction)), 1.0f},
-                i < count);
-            rays.sampled[at] = rays.passed[at] = i < count;
+            set_outline_ray(of_.view_, edge.point, i < count, rays, at);
         }
         expose_rays(of_.view_, block, rays, time);
         trace(block, rays, time, results);

@@ -10,68 +10,17 @@
 #include <utility>
 
 #include "../render/gradients/filtered_film.hpp"
-#include "../scene/scene_checks.hpp"
 #include "gradient_row.hpp"
 #include "lens_rays.hpp"
 
 namespace realcam {
 
-namespace {
-
-/// Throws InputError for a feature of the camera or the settings that derivatives do not support.
-void check_supported(const Camera& camera, const RenderSettings& settings) {
-    const auto refuse = [](const std::string& what) { throw InputError("derivatives of pictures " + what); };
-    if (settings.filter == PixelFilter::box)
-        refuse("need a smooth pixel filter, tent or gaussian; that of the box is a delta function at its edges");
-    if (camera.model != CameraModel::full_lens) refuse("need the camera model full");
-    if (camera.geometry) refuse("do not support calibrated cameras");
-    if (camera.moves()) refuse("do not support cameras that move during the exposure");
-    for (const EffectInfo& effect : kEffects)
-        if (settings.effects.*effect.member && !effect.is_on() && effect.member != &EffectChoice::dispersion)
-            refuse(std::string("do not support the effect ") + effect.name);
-    if (settings.pupil_sampling != PupilSampling::outline) refuse("need the pupil sampling outline");
-}
-
-/// Flattens derivatives in the order of PictureGradient.
-void append_numbers(const CameraDerivatives& from, double by_stop, std::vector<double>& to) {
-    to.insert(to.end(), from.by_variable.begin(), from.by_variable.end());
-    to.insert(to.end(), from.by_film.begin(), from.by_film.end());
-    to.insert(to.end(), from.by_pose.begin(), from.by_pose.end());
-    to.push_back(by_stop);
-}
-
-}  // namespace
-
-Camera PictureGradient::extended(Camera camera, int margin) {
-    Film& film = camera.film;
-    film.width_mm *= static_cast<double>(film.width + 2 * margin) / film.width;
-    film.height_mm *= static_cast<double>(film.height + 2 * margin) / film.height;
-    film.width += 2 * margin;
-    film.height += 2 * margin;
-    return camera;
-}
-
-LensEffects PictureGradient::sample_effects(const RenderSettings& settings) {
-    LensEffects effects = settings.lens_effects();
-    effects.pixel_filter = PixelFilter::box;
-    return effects;
-}
-
 PictureGradient::PictureGradient(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                                  std::vector<LensVariable> variables)
-    : camera_((validate(camera), check_supported(camera, settings), camera)),
-      settings_(settings),
-      margin_(static_cast<int>(std::ceil(filter_radius(settings.filter) - 0.5f))),
-      path_(camera.lens, camera.lens.wavelength_nm, std::move(variables)),
-      outline_(camera.lens, camera.lens.wavelength_nm),
-      setup_(std::make_shared<const CameraSetup>(extended(camera, margin_), fast_pupil_tracer(), nullptr,
-                                                 sample_effects(settings))),
-      film_index_(camera.lens.indices(camera.lens.wavelength_nm).back()) {
-    SceneChecks().check(scene);
-    if (scene.moves() && camera.shutter.readout_time_s > 0)
-        throw InputError("derivatives of pictures do not support rolling shutters in scenes that move");
-    embree_ = std::make_unique<const EmbreeParts>(scene, camera);
-    view_ = setup_->view(embree_->scene.placed().origin_m(), embree_->scene.placed().moves());
+    : CameraGradient(scene, camera, settings, std::move(variables), fast_pupil_tracer()),
+      embree_(std::make_unique<const EmbreeParts>(scene, camera)),
+      view_(setup_->view(embree_->scene.placed().origin_m(), embree_->scene.placed().moves())) {
+    scene_moves_ = embree_->scene.placed().moves();
 }
 
 PictureGradient::~PictureGradient() = default;
@@ -116,7 +65,7 @@ public:
 private:
     /// Number of rows of pixels that the samples of a row count for: those within two pixels.
     static constexpr std::size_t kRowCount = 5;
-    int first_row(int row) const { return row - of_.margin_ - 2; }
+    int first_row(int row) const { return row - of_.film_.margin - 2; }
     std::size_t row_size() const { return 3 * static_cast<std::size_t>(of_.width()); }
 
     const PictureGradient& of_;
@@ -140,10 +89,6 @@ void PictureGradient::run(const Pass& pass, const KeepGoing& keep_going) {
             });
         });
     }
-}
-
-double PictureGradient::exposure_per_sample(int spp) const {
-    return camera_.exposure_time_s * settings_.filter_transmittance() / spp;
 }
 
 WavelengthsInDouble PictureGradient::wavelengths(const float* variable) const {
@@ -174,19 +119,6 @@ void PictureGradient::trace_outline(OutlineBlock& block, const std::array<double
     path_.trace(block.rays, sums, surfaces, tangents, if_dispersed(many));
 }
 
-Vec3d PictureGradient::film_origin(Vec3f origin) const {
-    return {static_cast<double>(origin.x), static_cast<double>(origin.y), camera_.lens.film_distance};
-}
-
-Vec3d PictureGradient::film_direction(Vec3f direction) const {
-    const double l = static_cast<double>(direction.x), m = static_cast<double>(direction.y);
-    return {l, m, -std::sqrt(film_index_ * film_index_ - l * l - m * m)};
-}
-
-Vec2d PictureGradient::pixels_per_mm() const {
-    return {-camera_.film.width / camera_.film.width_mm, camera_.film.height / camera_.film.height_mm};
-}
-
 std::vector<float> PictureGradient::picture(const GradientSamples& samples, const KeepGoing& keep_going) {
     FilmRows film(*this, 1);
     const double scale = exposure_per_sample(samples.spp);
@@ -215,12 +147,7 @@ struct PictureGradient::ReverseSums {
 
 std::vector<double> PictureGradient::reverse(const float* adjoint, const float* control, const GradientSamples& samples,
                                              const KeepGoing& keep_going) {
-    std::vector<float> of_control;
-    const auto pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
-    if (control)
-        for (std::size_t i = 0; i < 3 * pixels; i += 3)
-            of_control.push_back(adjoint[i] * control[i] + adjoint[i + 1] * control[i + 1] +
-                                 adjoint[i + 2] * control[i + 2]);
+    const std::vector<float> of_control = adjoint_of_control(adjoint, control);
     // Sums of the rows, which are added in order, make the result independent of the number of threads.
     std::vector<std::vector<double>> rows(static_cast<std::size_t>(view_.height));
     std::vector<std::int64_t> unexplained(rows.size()), edges(rows.size());
@@ -241,7 +168,7 @@ std::vector<double> PictureGradient::reverse(const float* adjoint, const float* 
                         const Vec3f slopes = part.film(sample.pixel, sample.light, sample.weight);
                         if (slopes.y == 0 && slopes.z == 0) continue;
                         RayBlock& block = part.block;
-                        block.add(sample, film_origin(from.origin[lane]), film_direction(from.direction[lane]));
+                        block.add(sample, outline_.view(), from.origin[lane], from.direction[lane]);
                         block.set_tangent(block.count - 1, {scale * per_mm.x * static_cast<double>(slopes.y),
                                                             scale * per_mm.y * static_cast<double>(slopes.z)});
                         if (block.count == kRays) trace_film(block, part.sums), block.count = 0;
@@ -266,7 +193,7 @@ std::vector<double> PictureGradient::reverse(const float* adjoint, const float* 
                 });
             CameraDerivatives derivatives = path_.derivatives(all.front().sums);
             if (control) derivatives.by_pose = path_.derivatives(all.back().sums).by_pose;
-            append_numbers(derivatives, all.front().by_stop, rows[at]);
+            rows[at] = by_all_numbers(derivatives, all.front().by_stop);
             unexplained[at] = row.unexplained, edges[at] = row.edge_count;
         },
         keep_going);
@@ -353,7 +280,7 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
             };
             if (samples.interior)
                 row.for_film_samples([&](int lane, const SampleLight& sample, const FilmSamples<kLanes>& from) {
-                    block.add(sample, film_origin(from.origin[lane]), film_direction(from.direction[lane]));
+                    block.add(sample, outline_.view(), from.origin[lane], from.direction[lane]);
                     if (block.count == kRays) trace_block();
                 });
             if (block.count > 0) trace_block();

@@ -3574,10 +3574,16 @@ class _PictureGradient:
     Internal: use realcam.render_gradient.
     """
     def __init__(
-        self, scene: Scene, camera: Camera, settings: RenderSettings, variables: Sequence[tuple[str, int, int, int]]
+        self,
+        scene: Scene,
+        camera: Camera,
+        settings: RenderSettings,
+        variables: Sequence[tuple[str, int, int, int]],
+        device: str,
     ) -> None:
         """
         Prepares derivatives of a picture. variables: see Lens._ray_derivatives.
+        device: as for render; several GPUs are refused.
         The numbers of a camera are, in this order: the variables; translation (mm) and rotation (rad) of the film about its
         centre relative to the camera, along the film's axes; translation and rotation of the camera, along the camera's axes;
         and the radius of the diaphragm (mm).

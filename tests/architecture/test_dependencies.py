@@ -58,7 +58,7 @@ ORDER = {
 }
 
 # Files that devices run, with the files that they include: they must neither own memory nor throw.
-RUN_BY_DEVICES = ("embree/kernels.cpp", "bvh/traverse_scene.hpp")
+RUN_BY_DEVICES = ("embree/kernels.cpp", "bvh/traverse_scene.hpp", "render/gradients/gradient_film.hpp")
 
 NOT_IN_CORE = {
     "the CUDA runtime": r"\bcuda[A-Z]\w*|#\s*include\s*[<\"]cuda|<<<",

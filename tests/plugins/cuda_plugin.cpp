@@ -23,6 +23,7 @@ constexpr CudaBackend kBackend = {
     .make_cuda_session = [](const std::vector<int>&, PupilTracer) -> std::unique_ptr<Session> {
         throw UnsupportedGpu("the tests have no code for the GPU");
     },
+    .make_cuda_gradient = nullptr,
     .trace_rays_on_gpu = nullptr,
     .trace_arrays = nullptr,
     .generate_ray_arrays = nullptr,

@@ -7,7 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "../../embree/picture_gradient.hpp"
+#include "../../devices/devices.hpp"
+#include "../../render/gradients/camera_gradient.hpp"
 #include "../bindings.hpp"
 #include "../lens/lens_variables.hpp"
 #include "../values/arrays.hpp"
@@ -19,14 +20,14 @@ using namespace py::literals;
 namespace {
 
 /// Returns the numbers of a picture-sized array (H, W, 3). Throws InputError if its shape differs.
-const float* picture_of(const InputArray<float>& array, const PictureGradient& of, const char* name) {
+const float* picture_of(const InputArray<float>& array, const CameraGradient& of, const char* name) {
     if (array.ndim() != 3 || array.shape(0) != of.height() || array.shape(1) != of.width() || array.shape(2) != 3)
         throw InputError(std::string(name) + " must be an array of shape (" + std::to_string(of.height()) + ", " +
                          std::to_string(of.width()) + ", 3), like the picture");
     return array.data();
 }
 
-const float* control_of(const std::optional<InputArray<float>>& array, const PictureGradient& of) {
+const float* control_of(const std::optional<InputArray<float>>& array, const CameraGradient& of) {
     return array ? picture_of(*array, of, "control") : nullptr;
 }
 
@@ -48,12 +49,12 @@ GradientSamples samples_of(std::int64_t seed, int spp, int outline_spp, const st
 
 void bind_picture_gradient(py::module_& m) {
     const auto new_gradient = [](const Assembly& scene, const Camera& camera, const RenderSettings& settings,
-                                 const Variables& variables) {
+                                 const Variables& variables, const std::string& device) {
         std::vector<LensVariable> list = variables_from(variables);
         const Unlocked unlocked;
-        return std::make_unique<PictureGradient>(scene, camera, settings, std::move(list));
+        return make_gradient(device, scene, camera, settings, std::move(list));
     };
-    const auto picture = [](PictureGradient& self, std::int64_t seed, int spp, bool uniform) {
+    const auto picture = [](CameraGradient& self, std::int64_t seed, int spp, bool uniform) {
         GradientSamples samples = samples_of(seed, spp, 1, "both", false);
         samples.uniform = uniform;
         std::vector<float> exposure;
@@ -63,7 +64,7 @@ void bind_picture_gradient(py::module_& m) {
         }
         return array_from(std::move(exposure), {self.height(), self.width(), 3});
     };
-    const auto reverse = [](PictureGradient& self, const InputArray<float>& adjoint,
+    const auto reverse = [](CameraGradient& self, const InputArray<float>& adjoint,
                             const std::optional<InputArray<float>>& control, std::int64_t seed, int spp,
                             int outline_spp, const std::string& terms, bool pairs) {
         const GradientSamples samples = samples_of(seed, spp, outline_spp, terms, pairs);
@@ -76,7 +77,7 @@ void bind_picture_gradient(py::module_& m) {
         const auto count = static_cast<py::ssize_t>(gradient.size());
         return array_from(std::move(gradient), {count});
     };
-    const auto forward = [](PictureGradient& self, const InputArray<double>& directions,
+    const auto forward = [](CameraGradient& self, const InputArray<double>& directions,
                             const std::optional<InputArray<float>>& control, std::int64_t seed, int spp,
                             int outline_spp, const std::string& terms, bool pairs) {
         const GradientSamples samples = samples_of(seed, spp, outline_spp, terms, pairs);
@@ -92,9 +93,10 @@ void bind_picture_gradient(py::module_& m) {
         }
         return array_from(std::move(pictures), {directions.shape(0), self.height(), self.width(), 3});
     };
-    py::class_<PictureGradient>(m, "_PictureGradient", "Internal: use realcam.render_gradient.")
-        .def(py::init(new_gradient), "scene"_a, "camera"_a, "settings"_a, "variables"_a,
+    py::class_<CameraGradient>(m, "_PictureGradient", "Internal: use realcam.render_gradient.")
+        .def(py::init(new_gradient), "scene"_a, "camera"_a, "settings"_a, "variables"_a, "device"_a,
              R"(Prepares derivatives of a picture. variables: see Lens._ray_derivatives.
+device: as for render; several GPUs are refused.
 The numbers of a camera are, in this order: the variables; translation (mm) and rotation (rad) of the film about its
 centre relative to the camera, along the film's axes; translation and rotation of the camera, along the camera's axes;
 and the radius of the diaphragm (mm).)")
@@ -110,12 +112,12 @@ pairs: False: all samples on the film are independent, for comparison.)")
         .def("forward", forward, "directions"_a, "control"_a, py::kw_only(), "seed"_a, "spp"_a, "outline_spp"_a,
              "terms"_a = "both", "pairs"_a = true,
              R"(Returns the derivatives of the picture along directions (P, N) of the numbers, (P, H, W, 3).)")
-        .def_property_readonly("scene_moves", &PictureGradient::scene_moves,
+        .def_property_readonly("scene_moves", &CameraGradient::scene_moves,
                                "True if the scene moves during the exposure.")
-        .def_property_readonly("number_count", &PictureGradient::number_count, "Number of numbers of the camera, N.")
+        .def_property_readonly("number_count", &CameraGradient::number_count, "Number of numbers of the camera, N.")
         .def_property_readonly(
             "unexplained_edges",
-            [](const PictureGradient& self) { return std::pair(self.unexplained_edges(), self.all_edges()); },
+            [](const CameraGradient& self) { return std::pair(self.unexplained_edges(), self.all_edges()); },
             "Edges of the pupil that no rim explains, and lines on which edges were sought, in the last call of "
             "reverse.");
 }

@@ -1,5 +1,6 @@
 #include "tangent_path.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -92,10 +93,6 @@ TangentPath::TangentPath(const LensSystem& lens, double wavelength_nm, std::vect
             duals_[k].push_back(std::move(seeded));
         }
     }
-    for (std::size_t k = 0; k < count; ++k) {
-        surfaces_[k].duals = duals_[k].data();
-        surfaces_[k].dual_count = static_cast<int>(duals_[k].size());
-    }
     // In the exit frame of film_path_ends the film's centre has x = y = 0.
     exit_ = {{0, 0, camera_film_position(lens) - path.exit_position}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 1};
     if (view.free.frames && view.free.frames[count - 1].out.changes) {
@@ -124,69 +121,72 @@ void TangentPath::Sums::clear() {
         for (double& sum : lanes) sum = 0;
 }
 
-inline void TangentPath::trace_surface(std::size_t k, Rays& rays, AdjointStep<kLanes>& step, Dual8* form_sums,
-                                       const WavelengthsInDouble* wavelengths) const {
+namespace {
+
+constexpr int kLanes = TangentPath::kLanes;
+
+/// `sums` of trace_tangents_to_scene: the contributions of all numbers.
+struct AllSums {
+    const TangentPath& path;
+    TangentPath::Sums& to;
+
+    AdjointStep<kLanes>& surface(int k) { return to.surfaces[static_cast<std::size_t>(k)]; }
+    AdjointStep<kLanes>& film() { return to.film; }
+    FreeformTangents forms(int k) { return path.forms(k, to.forms[static_cast<std::size_t>(k)].data()); }
+    Lanes<double, kLanes>& pose(int i) { return to.pose[i]; }
+    void finish(int k, const TangentPath::Rays& rays) {
+        if (k == kStartOnFilm) return;
+        surface(k).origin = rays.origin, surface(k).direction = rays.direction;
+    }
+};
+
+/// `sums` of trace_tangents_to_scene: the crossings of each surface. Contributions are not used.
+struct CrossingRecord {
+    const TangentPath& path;
+    std::vector<TangentPath::Crossing>& crossings;
+    std::vector<Dual8> form_sums;
+    AdjointStep<kLanes> unused{};
+    Lanes<double, kLanes> unused_pose{};
+
+    AdjointStep<kLanes>& surface(int) { return unused; }
+    AdjointStep<kLanes>& film() { return unused; }
+    FreeformTangents forms(int k) { return path.forms(k, form_sums.data()); }
+    Lanes<double, kLanes>& pose(int) { return unused_pose; }
+    void finish(int k, const TangentPath::Rays& rays) {
+        if (k == kStartOnFilm) return;
+        crossings[static_cast<std::size_t>(k)] = {rays.origin, rays.direction, rays.origin_tangent};
+    }
+};
+
+/// trace_tangents_to_scene with the wavelengths of TangentPath::trace.
+template <class Sums>
+inline void trace_all(const TangentLens& lens, const WavelengthsInDouble* wavelengths, TangentPath::Rays& rays,
+                      const int* starts, const Vec3d* rim_tangents, Sums& sums) {
     if (wavelengths)
-        trace_tangents(surfaces_[k], WavelengthsInDouble{wavelengths->surfaces + k, wavelengths->variable}, rays, step,
-                       form_sums);
+        trace_tangents_to_scene(
+            lens, [&](int k) { return WavelengthsInDouble{wavelengths->surfaces + k, wavelengths->variable}; }, rays,
+            starts, rim_tangents, sums);
     else
-        trace_tangents(surfaces_[k], OneWavelength{}, rays, step, form_sums);
+        trace_tangents_to_scene(lens, [](int) { return OneWavelength{}; }, rays, starts, rim_tangents, sums);
 }
+
+}  // namespace
 
 // target_clones compiles only inlined code for each instruction set, hence `flatten`.
 __attribute__((flatten)) REALCAM_CLONES void TangentPath::trace(Rays& rays, Sums& sums, const int* starts,
                                                                 const Vec3d* rim_tangents,
                                                                 const WavelengthsInDouble* wavelengths) const {
-    constexpr int N = kLanes;
-    for (int i = 0; i < N; ++i) {
-        if (!starts) {
-            add_start({rays.origin.x[i], rays.origin.y[i], 0}, rays.direction_tangent[i], sums.film, i);
-        } else {
-            rays.direction_tangent.set(i, {0, 0, 0});
-        }
-        rays.origin_tangent.set(i, {0, 0, 0});
-    }
-    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-        const TangentSurface& surface = surfaces_[k];
-        AdjointStep<N>& step = sums.surfaces[k];
-        trace_surface(k, rays, step, sums.forms[k].data(), wavelengths);
-        step.origin = rays.origin, step.direction = rays.direction;
-        if (!starts) continue;
-        for_surface_points(surface, rays.origin, sums.forms[k].data(), [&](const auto& point, int i) {
-            if (starts[i] != static_cast<int>(k)) return;
-            const Vec3d tangent = rim_tangents[i];
-            rays.direction_tangent.set(i, tangent);
-            add_start(rays.origin[i], tangent, step, i);
-            // The rim moves along z with the surface's sag there.
-            point.add_numbers(Vec3d{0, 0, 0}, tangent.z / point.gradient().z, step, i);
-        });
-    }
-    change_frame(exit_, static_cast<LensRays<double, N>&>(rays));
-    REALCAM_LANES
-    for (int i = 0; i < N; ++i) {
-        const Vec3d o = rays.origin[i], p = rays.direction[i];
-        const Vec3d o_tangent = exit_.direction(rays.origin_tangent[i]),
-                    p_tangent = exit_.direction(rays.direction_tangent[i]);
-        rays.origin_tangent.set(i, o_tangent);
-        rays.direction_tangent.set(i, p_tangent);
-        const Vec3d moment = cross(o_tangent, p) + cross(o, p_tangent);
-        sums.pose[0][i] += p_tangent.x, sums.pose[1][i] += p_tangent.y, sums.pose[2][i] += p_tangent.z;
-        sums.pose[3][i] += moment.x, sums.pose[4][i] += moment.y, sums.pose[5][i] += moment.z;
-    }
+    AllSums all{*this, sums};
+    trace_all(view(), wavelengths, rays, starts, rim_tangents, all);
 }
 
 __attribute__((flatten)) REALCAM_CLONES void TangentPath::record(Rays& rays, std::vector<Crossing>& crossings,
                                                                  const WavelengthsInDouble* wavelengths) const {
-    for (int i = 0; i < kLanes; ++i) rays.origin_tangent.set(i, {0, 0, 0});
     crossings.resize(surfaces_.size());
-    AdjointStep<kLanes> unused{};
-    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-        std::vector<Dual8> forms(surfaces_[k].view.kind == SurfaceShape::freeform ? kLanes * duals_[k].size() : 0);
-        trace_surface(k, rays, unused, forms.data(), wavelengths);
-        crossings[k].origin = rays.origin, crossings[k].direction = rays.direction;
-        crossings[k].origin_tangent = rays.origin_tangent;
-    }
-    change_frame(exit_, static_cast<LensRays<double, kLanes>&>(rays));
+    std::size_t most = 0;
+    for (const auto& duals : duals_) most = std::max(most, duals.size());
+    CrossingRecord record{*this, crossings, std::vector<Dual8>(freeforms_.empty() ? 0 : kLanes * most)};
+    trace_all(view(), wavelengths, rays, nullptr, nullptr, record);
 }
 
 CameraDerivatives TangentPath::derivatives(const Sums& sums) const {
@@ -226,6 +226,19 @@ void TangentPath::for_sums(SomeSums& sums, F&& f) {
     for (auto& step : sums.surfaces)
         for (auto& lanes : step.sums) f(lanes);
     for (auto& lanes : sums.pose) f(lanes);
+}
+
+std::vector<std::uint32_t> TangentPath::numbers_in_use() const {
+    std::vector<std::uint32_t> numbers(surfaces_.size());
+    for (std::size_t k = 0; k < surfaces_.size(); ++k)
+        for (int number = 0; number < kSurfaceNumbers; ++number) {
+            double unit[kSurfaceNumbers] = {};
+            unit[number] = 1;
+            for (std::size_t v = 0; v < variables_.size(); ++v)
+                if (sum_of_surface(unit, duals_[k][v / kDualLanes + 1], v % kDualLanes) != 0)
+                    numbers[k] |= 1u << number;
+        }
+    return numbers;
 }
 
 TangentPath::Coefficients TangentPath::coefficients(const CameraDerivatives& along) const {

@@ -3,9 +3,20 @@
 #include <optional>
 #include <vector>
 
+#include "adjoint_trace.hpp"
 #include "tangent_trace.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Policy of trace_tangents for lenses that may have freeforms.
+struct FreeformTangents {
+    const DualSurface* duals;  ///< dual surfaces of the surface
+    int dual_count;
+    Dual8* sums;  ///< contributions of its own variables: for each lane, as many numbers as there are dual surfaces
+
+    static constexpr bool enabled = true;
+    FreeformPoint point(Vec3d at, int lane) const { return {duals, dual_count, sums + lane * dual_count, at}; }
+};
 
 /// Derivatives by the numbers of a camera.
 struct CameraDerivatives {
@@ -29,10 +40,13 @@ public:
     /// Prepares a lens. Throws InputError if a variable is invalid (check_variables) or the film is curved.
     TangentPath(const LensSystem& lens, double wavelength_nm, std::vector<LensVariable> variables);
 
-    /// Index of the last surface, whose rim rays from the film meet first, is 0; that of the film is kFilm.
-    static constexpr int kFilm = -1;
     int surface_count() const { return static_cast<int>(surfaces_.size()); }
     std::size_t variable_count() const { return variables_.size(); }
+
+    /// View for traces of other blocks of rays, valid as long as this object.
+    TangentLens view() const { return {surfaces_.data(), surface_count(), exit_}; }
+    /// Numbers of each surface that derivatives depend on, as bits (1 << SurfaceNumber).
+    std::vector<std::uint32_t> numbers_in_use() const;
 
     /// Contributions to -dH of each lane, from all numbers of the camera; cleared by the constructor.
     struct Sums {
@@ -60,7 +74,7 @@ public:
         Vec3Lanes<double, kLanes> origin, direction, origin_tangent;
     };
     /// Traces rays and their tangents from the film like `trace`, but without sums, and records their crossings of each
-    /// surface. On return, the rays are in the camera's frame, but the tangents are not.
+    /// surface.
     void record(Rays& rays, std::vector<Crossing>& crossings, const WavelengthsInDouble* wavelengths = nullptr) const;
 
     /// Returns the derivatives that follow from the sums of all lanes.
@@ -73,13 +87,16 @@ public:
     /// Adds the derivative along a direction, which follows from the sums of each lane, to `by`.
     static void add_along(const Coefficients& coefficients, const Sums& sums, std::array<double, kLanes>& by);
 
+    /// Returns the policy of a surface; `form_sums`: see FreeformTangents::sums.
+    FreeformTangents forms(int surface, Dual8* form_sums) const {
+        const std::vector<DualSurface>& duals = duals_[static_cast<std::size_t>(surface)];
+        return {duals.data(), static_cast<int>(duals.size()), form_sums};
+    }
+
 private:
     /// Calls f(sums of the lanes) for all sums but those of freeform terms.
     template <class SomeSums, class F>
     static void for_sums(SomeSums& sums, F&& f);
-    /// Calls trace_tangents for surface k.
-    void trace_surface(std::size_t k, Rays& rays, AdjointStep<kLanes>& step, Dual8* form_sums,
-                       const WavelengthsInDouble* wavelengths) const;
     std::vector<LensVariable> variables_;
     std::vector<TangentSurface> surfaces_;  ///< from the film to the scene
     std::vector<FreeformView<double>> freeforms_;

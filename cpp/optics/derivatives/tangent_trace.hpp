@@ -1,5 +1,6 @@
 #pragma once
-#include "adjoint_trace.hpp"
+#include "../trace/lens_trace.hpp"
+#include "surface_points.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -15,17 +16,25 @@ namespace REALCAM_NAMESPACE {
 // So one ray that is traced from the film, with its derivative (tangent) along a direction w of q, yields -w . dH/dq =
 // w . dx by all numbers of the camera. Nothing of the ray must be stored.
 
+/// Index of the film as the start of rays; that of the last surface, whose rim they meet first, is 0.
+inline constexpr int kStartOnFilm = -1;
+
 /// N rays with their derivatives along one direction in the space of rays, in the frame of the current surface.
 template <int N>
 struct TangentRays : LensRays<double, N> {
     Vec3Lanes<double, N> origin_tangent, direction_tangent;
 };
 
+/// Tangent of an optical direction whose x and y change by w, and whose length does not change.
+REALCAM_INLINE Vec3d tangent_of_cosines(Vec3d direction, Vec2d w) {
+    return {w.x, w.y, -(direction.x * w.x + direction.y * w.y) / direction.z};
+}
+
 /// Adds the contributions to -dH of the frame of the plane on which a ray starts. Adjoints are those of the frame's
 /// origin and axes. `at`: the start point, which has no tangent; `direction_tangent`: tangent of the ray's optical
 /// direction, in the direction of the trace towards the scene.
 template <int N>
-inline void add_start(Vec3d at, Vec3d direction_tangent, AdjointStep<N>& step, int lane) {
+REALCAM_INLINE void add_start(Vec3d at, Vec3d direction_tangent, AdjointStep<N>& step, int lane) {
     // The ray's direction is opposite to that of the light, whose path to a displaced end grows by -p . v.
     step.add(kFrameOrigin, lane, direction_tangent);
     step.add(kFrameX, lane, at.x * direction_tangent);
@@ -41,8 +50,8 @@ inline void add_start(Vec3d at, Vec3d direction_tangent, AdjointStep<N>& step, i
 /// The direction behind a surface is p' = p + k G, with the gradient G of the surface. Because |p| and |p'| are the
 /// refractive indices, which the tangent does not change, dk = -k (dp . G + p' . dG) / (p' . G).
 template <int N, class SurfacePoint>
-inline void push_tangent(const SurfacePoint& point, double index_squared, Vec3d o, Vec3d p, TangentRays<N>& rays,
-                         AdjointStep<N>& step, int lane) {
+REALCAM_INLINE void push_tangent(const SurfacePoint& point, double index_squared, Vec3d o, Vec3d p,
+                                 TangentRays<N>& rays, AdjointStep<N>& step, int lane) {
     const Vec3d at = rays.origin[lane], behind = rays.direction[lane], tangent = rays.direction_tangent[lane];
     const Vec3d gradient = point.gradient(), bend = behind - p;
     const double t = dot(at - o, p) / dot(p, p);
@@ -74,10 +83,12 @@ struct WavelengthsInDouble {
     struct Boundary {
         ManyWavelengths::Boundary in_float;
         static constexpr bool is_coated = false;
-        double squared_index_change(int lane) const { return static_cast<double>(in_float.squared_index_change(lane)); }
+        REALCAM_INLINE double squared_index_change(int lane) const {
+            return static_cast<double>(in_float.squared_index_change(lane));
+        }
     };
     template <class Surface>
-    Boundary at(const Surface&, int index) const {
+    REALCAM_INLINE Boundary at(const Surface&, int index) const {
         return {{surfaces[index], variable}};
     }
 };
@@ -87,19 +98,33 @@ struct TangentSurface {
     SurfaceView<double> traced;  ///< without rims
     SurfaceView<double> view;  ///< its kind is the one that the variables require
     FrameChange<double> before;  ///< from the frame of the previous surface to that of this one
-    const FreeformView<double>* freeform;  ///< null unless it is one
-    const DualSurface* duals;  ///< its dual surfaces
-    int dual_count;
+    const FreeformView<double>* freeform;  ///< for FreeformTangents, in the host's memory; null unless it is one
 };
 
-/// Calls f(point of the surface, lane) for the points of N rays.
-template <int N, class F>
-inline void for_surface_points(const TangentSurface& surface, const Vec3Lanes<double, N>& at, Dual8* form_sums, F&& f) {
+/// Lens with the data for the tangents of rays from the film to the scene.
+struct TangentLens {
+    const TangentSurface* surfaces;
+    int count;
+    FrameChange<double> exit;  ///< from the last surface's frame to the camera's
+};
+
+/// Policy of trace_tangents for lenses without freeforms. Another one is FreeformTangents.
+struct NoFreeforms {
+    static constexpr bool enabled = false;
+};
+
+/// Calls f(point of the surface, lane) for the points of N rays. `forms`: NoFreeforms or FreeformTangents.
+template <int N, class Forms, class F>
+REALCAM_INLINE void for_surface_points(const TangentSurface& surface, const Vec3Lanes<double, N>& at,
+                                       const Forms& forms, F&& f) {
     const SurfaceView<double> view = surface.view;
-    if (view.kind == SurfaceShape::freeform) {
-        for (int i = 0; i < N; ++i)
-            f(FreeformPoint(surface.duals, surface.dual_count, form_sums + i * surface.dual_count, at[i]), i);
-    } else if (view.kind == SurfaceShape::asphere) {
+    if constexpr (Forms::enabled) {
+        if (view.kind == SurfaceShape::freeform) {
+            for (int i = 0; i < N; ++i) f(forms.point(at[i], i), i);
+            return;
+        }
+    }
+    if (view.kind == SurfaceShape::asphere) {
         REALCAM_LANES
         for (int i = 0; i < N; ++i) f(AspherePoint(view, at[i]), i);
     } else {
@@ -112,7 +137,7 @@ inline void for_surface_points(const TangentSurface& surface, const Vec3Lanes<do
 /// Replaces rays that have missed a surface, or were totally reflected, by one that passes, without a tangent. `o`,
 /// `p`: rays in front of the surface. Returns false if no ray passes.
 template <int N>
-inline bool replace_ended(TangentRays<N>& rays, Vec3Lanes<double, N>& o, Vec3Lanes<double, N>& p) {
+REALCAM_HD inline bool replace_ended(TangentRays<N>& rays, Vec3Lanes<double, N>& o, Vec3Lanes<double, N>& p) {
     int passing = 0;
     while (passing < N && rays.status[passing] != 0) ++passing;
     if (passing == N) return false;
@@ -129,12 +154,24 @@ inline bool replace_ended(TangentRays<N>& rays, Vec3Lanes<double, N>& o, Vec3Lan
     return true;
 }
 
+/// Traces N rays, which are in a surface's frame, through this surface, which blocks none of them. `media`: policy of
+/// trace_lens for this surface. Not REALCAM_INLINE: GCC's `flatten` stops at functions that are always inlined.
+template <LensKind kind, int N, class Media>
+REALCAM_HD inline void cross_surface(const TangentSurface& surface, const Media& media, LensRays<double, N>& rays) {
+    // The directions of the blades, of which there are none, are not set: that would be the largest store of a GPU's
+    // thread.
+    LensView<double> one;
+    one.surfaces = &surface.traced, one.count = 1, one.kind = kind;
+    one.iris.blades = 0, one.iris.apothem = one.iris.curvature = 0;
+    one.free.freeforms = surface.freeform;
+    trace_lens<kind>(one, rays, NoRecord{}, media);
+}
+
 /// Traces N rays and their tangents through one surface, which blocks none of them, and adds the contributions of its
-/// numbers to `step`. `form_sums`: for freeforms, the contributions of their own variables: for each lane, as many
-/// dual numbers as there are dual surfaces. `media`: policy of trace_lens for this surface.
-template <int N, class Media>
-inline void trace_tangents(const TangentSurface& surface, const Media& media, TangentRays<N>& rays,
-                           AdjointStep<N>& step, Dual8* form_sums) {
+/// numbers to `step`. `media`: policy of trace_lens for this surface. `forms`: NoFreeforms or FreeformTangents.
+template <int N, class Media, class Forms>
+REALCAM_HD inline void trace_tangents(const TangentSurface& surface, const Media& media, const Forms& forms,
+                                      TangentRays<N>& rays, AdjointStep<N>& step) {
     const FrameChange<double> frame = surface.before;
     Vec3Lanes<double, N> o, p;
     if (frame.changes) {
@@ -152,15 +189,62 @@ inline void trace_tangents(const TangentSurface& surface, const Media& media, Ta
         o.set(i, from);
         p.set(i, rays.direction[i]);
     }
-    // The frame has already been changed.
-    const LensView<double> one{&surface.traced, 1, LensKind::any, {}, {nullptr, surface.freeform, nullptr}};
-    trace_lens<LensKind::any>(one, static_cast<LensRays<double, N>&>(rays), NoRecord{}, media);
+    cross_surface<Forms::enabled ? LensKind::any : LensKind::rotational>(surface, media,
+                                                                         static_cast<LensRays<double, N>&>(rays));
     int ended = 0;
     for (int i = 0; i < N; ++i) ended |= rays.status[i];
     if (ended != 0 && !replace_ended(rays, o, p)) return;
-    for_surface_points(surface, rays.origin, form_sums, [&](const auto& point, int i) {
+    for_surface_points(surface, rays.origin, forms, [&](const auto& point, int i) {
         push_tangent(point, surface.view.index_squared, o[i], p[i], rays, step, i);
     });
+}
+
+/// Traces rays and their tangents from the film to the scene, as TangentPath::trace says. `media(k)`: policy of
+/// trace_lens for surface k. The contributions to -dH go to `sums`, which has
+///   surface(k), film()   AdjointStep<N>& of a surface, and of the start on the film
+///   forms(k)             NoFreeforms or FreeformTangents
+///   pose(i)              Lanes<double, N>& of the camera's translation and rotation, six in all
+///   finish(k, rays)      called when surface k (kStartOnFilm: the start) is done, with the rays behind it
+template <int N, class MediaAt, class Sums>
+REALCAM_HD inline void trace_tangents_to_scene(const TangentLens& lens, MediaAt&& media, TangentRays<N>& rays,
+                                               const int* starts, const Vec3d* rim_tangents, Sums& sums) {
+    for (int i = 0; i < N; ++i) {
+        if (!starts) {
+            add_start({rays.origin.x[i], rays.origin.y[i], 0}, rays.direction_tangent[i], sums.film(), i);
+        } else {
+            rays.direction_tangent.set(i, {0, 0, 0});
+        }
+        rays.origin_tangent.set(i, {0, 0, 0});
+    }
+    sums.finish(kStartOnFilm, rays);
+    for (int k = 0; k < lens.count; ++k) {
+        const TangentSurface& surface = lens.surfaces[k];
+        AdjointStep<N>& step = sums.surface(k);
+        const auto forms = sums.forms(k);
+        trace_tangents(surface, media(k), forms, rays, step);
+        if (starts)
+            for_surface_points(surface, rays.origin, forms, [&](const auto& point, int i) {
+                if (starts[i] != k) return;
+                const Vec3d tangent = rim_tangents[i];
+                rays.direction_tangent.set(i, tangent);
+                add_start(rays.origin[i], tangent, step, i);
+                // The rim moves along z with the surface's sag there.
+                point.add_numbers(Vec3d{0, 0, 0}, tangent.z / point.gradient().z, step, i);
+            });
+        sums.finish(k, rays);
+    }
+    change_frame(lens.exit, static_cast<LensRays<double, N>&>(rays));
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const Vec3d o = rays.origin[i], p = rays.direction[i];
+        const Vec3d o_tangent = lens.exit.direction(rays.origin_tangent[i]),
+                    p_tangent = lens.exit.direction(rays.direction_tangent[i]);
+        rays.origin_tangent.set(i, o_tangent);
+        rays.direction_tangent.set(i, p_tangent);
+        const Vec3d moment = cross(o_tangent, p) + cross(o, p_tangent);
+        sums.pose(0)[i] += p_tangent.x, sums.pose(1)[i] += p_tangent.y, sums.pose(2)[i] += p_tangent.z;
+        sums.pose(3)[i] += moment.x, sums.pose(4)[i] += moment.y, sums.pose(5)[i] += moment.z;
+    }
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -77,6 +77,7 @@ def render_gradient(
     *,
     outline_spp: int | None = None,
     control_spp: int | None = None,
+    device: str = "auto",
     settings: RenderSettings | None = None,
     **changes: Unpack[_SettingsKwargs],
 ) -> NDArray[np.floating]:
@@ -96,6 +97,8 @@ def render_gradient(
       derivatives of the function by the parameters, (P,). None: returns those of the picture, (P, H, W, 3).
     outline_spp: samples per pixel on the outline of the pupil, by default spp / 4. control_spp: samples per pixel, of
       other random numbers, of a first picture that serves as control variate for the pose, by default spp / 4; 0: none.
+    device: as in rc.render, but a single GPU. Only derivatives with an adjoint run on GPUs, for lenses without freeform
+      surfaces; "auto" takes the CPU for all others. Both devices have the same samples, but for roundings.
     settings, changes: settings of rc.render. Without settings, the filter of the pixels is the tent; the box, whose
       derivative has no finite variance, is refused. Derivatives take no noise goal, and no effect but dispersion. They
       trace no lights, so that the images of point lights and suns themselves are missing.
@@ -107,7 +110,11 @@ def render_gradient(
         parameters = [parameters]
     final = final_settings(settings, changes)
     numbers = _numbers_of(camera, parameters)
-    of_picture = _core._PictureGradient(scene, camera, final, [variable.as_tuple() for variable in numbers.variables])
+    if adjoint is None and device == "auto":
+        device = "cpu"
+    of_picture = _core._PictureGradient(
+        scene, camera, final, [variable.as_tuple() for variable in numbers.variables], device
+    )
     if numbers.growth.any() and of_picture.scene_moves:
         raise InputError("the derivative by exposure_time_s needs a scene in which nothing moves during the exposure")
     spp = _spp_of(final)

@@ -11,6 +11,7 @@ import pytest
 import realcam as rc
 from numpy.typing import NDArray
 
+from ..device_memory import needs_gpu
 from ..scenes import quad, scene_of, shifted, sky
 
 SEEDS = 16
@@ -43,19 +44,19 @@ def estimate(of_seed: Callable[[int], NDArray[np.float64]]) -> tuple[NDArray[np.
     return values.mean(0), values.std(0, ddof=1) / np.sqrt(SEEDS)
 
 
-def film(scene: rc.Scene, camera: rc.Camera, spp: int, seed: int, filter: str = "tent") -> NDArray[np.float64]:
+def film(scene: rc.Scene, camera: rc.Camera, spp: int, seed: int, filter: str, device: str) -> NDArray[np.float64]:
     """Picture from samples that count for all pixels whose filters they reach."""
     settings = rc.RenderSettings(filter=filter, effects=(), max_bounces=0)
-    return rc._core._PictureGradient(scene, camera, settings, []).picture(seed=seed, spp=spp).astype(float)
+    return rc._core._PictureGradient(scene, camera, settings, [], device).picture(seed=seed, spp=spp).astype(float)
 
 
 def difference(
-    scene: rc.Scene, below: rc.Camera, above: rc.Camera, step: float, *, spp: int = 128, filter: str = "tent"
+    scene: rc.Scene, below: rc.Camera, above: rc.Camera, step: float, device: str, *, spp: int, filter: str
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Central difference of sum(ADJOINT * picture) between cameras 2 steps apart."""
 
     def of_seed(seed: int) -> NDArray[np.float64]:
-        to, start = (film(scene, camera, spp, 1000 + seed, filter) for camera in (above, below))
+        to, start = (film(scene, camera, spp, 1000 + seed, filter, device) for camera in (above, below))
         return np.asarray(((to - start) * ADJOINT).sum() / (2 * step))
 
     return estimate(of_seed)
@@ -104,24 +105,32 @@ STEPS = {
 }
 
 
-def check_against_differences(scene: rc.Scene, camera: rc.Camera, filter: str, spp: int, parameters: list[str]) -> None:
+def check_against_differences(
+    scene: rc.Scene, camera: rc.Camera, filter: str, spp: int, parameters: list[str], device: str
+) -> None:
     found, error = estimate(
         lambda seed: rc.render_gradient(
-            scene, camera, parameters, ADJOINT, filter=filter, spp=spp, seed=seed, max_bounces=0
+            scene, camera, parameters, ADJOINT, filter=filter, device=device, spp=spp, seed=seed, max_bounces=0
         )
     )
     for i, parameter in enumerate(parameters):
         step = STEPS[parameter]
         wanted, wanted_error = difference(
-            scene, changed(camera, parameter, -step), changed(camera, parameter, step), step, spp=2 * spp, filter=filter
+            scene,
+            changed(camera, parameter, -step),
+            changed(camera, parameter, step),
+            step,
+            device,
+            spp=2 * spp,
+            filter=filter,
         )
         z = (found[i] - wanted) / np.hypot(error[i], wanted_error)
         assert abs(z) < ERRORS, f"{parameter}: {found[i]} +- {error[i]}, wanted {wanted} +- {wanted_error}"
 
 
-def test_rings_pose_and_film_equal_differences() -> None:
+def test_rings_pose_and_film_equal_differences(device: str) -> None:
     parameters = ["focus_distance_m", "f_number", "yaw_deg", "film_shift_right_mm"]
-    check_against_differences(stripes(), corner_camera(), "tent", 48, parameters)
+    check_against_differences(stripes(), corner_camera(), "tent", 48, parameters, device)
 
 
 def zoom_camera() -> rc.Camera:
@@ -130,36 +139,39 @@ def zoom_camera() -> rc.Camera:
     return rc.Camera(lens, film=rc.Film(0.8, 0.8, (8, 8), shift_mm=(10, 6)), exposure_time_s=1.0)
 
 
-def test_the_zoom_ring_equals_differences() -> None:
-    check_against_differences(stripes(occluder=False), zoom_camera(), "tent", 64, ["focal_length_mm"])
+def test_the_zoom_ring_equals_differences(device: str) -> None:
+    check_against_differences(stripes(occluder=False), zoom_camera(), "tent", 64, ["focal_length_mm"], device)
 
 
-def test_exposure_is_proportional_to_its_time() -> None:
+def test_exposure_is_proportional_to_its_time(device: str) -> None:
     scene, camera = stripes(), corner_camera()
-    wanted = film(scene, camera, 16, 0)  # in one second
-    pictures = rc.render_gradient(scene, camera, ["exposure_time_s", "f_number"], spp=16, max_bounces=0)
-    assert np.allclose(pictures[0], wanted, rtol=1e-6)
-    gradient = rc.render_gradient(scene, camera, "exposure_time_s", ADJOINT, spp=16, max_bounces=0)
+    wanted = film(scene, camera, 16, 0, "tent", device)  # in one second
+    gradient = rc.render_gradient(scene, camera, "exposure_time_s", ADJOINT, spp=16, max_bounces=0, device=device)
     assert gradient[0] == pytest.approx((ADJOINT * wanted).sum(), rel=1e-5)
+    if device == "cpu":
+        pictures = rc.render_gradient(
+            scene, camera, ["exposure_time_s", "f_number"], spp=16, max_bounces=0, device=device
+        )
+        assert np.allclose(pictures[0], wanted, rtol=1e-6)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("filter", ["tent", "gaussian"])
 @pytest.mark.parametrize("f_number", [2.2, 4.0])
 @pytest.mark.parametrize("occluder", [False, True])
-def test_all_parameters_equal_differences(filter: str, f_number: float, occluder: bool) -> None:
+def test_all_parameters_equal_differences(filter: str, f_number: float, occluder: bool, device: str) -> None:
     parameters = [parameter for parameter in STEPS if parameter != "focal_length_mm"]
-    check_against_differences(stripes(occluder), corner_camera(f_number), filter, 512, parameters)
+    check_against_differences(stripes(occluder), corner_camera(f_number), filter, 512, parameters, device)
 
 
-def test_control_variate_changes_the_noise_but_not_the_mean() -> None:
+def test_control_variate_changes_the_noise_but_not_the_mean(device: str) -> None:
     scene, camera = stripes(), corner_camera()
     parameters = ["up_m", "focus_distance_m", rc.Variable.radius(0)]
 
     def with_control(spp: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         return estimate(
             lambda seed: rc.render_gradient(
-                scene, camera, parameters, ADJOINT, spp=32, seed=seed, control_spp=spp, max_bounces=0
+                scene, camera, parameters, ADJOINT, spp=32, seed=seed, control_spp=spp, max_bounces=0, device=device
             )
         )
 
@@ -170,7 +182,7 @@ def test_control_variate_changes_the_noise_but_not_the_mean() -> None:
 def test_forward_is_the_transpose_of_reverse() -> None:
     scene, camera = stripes(), corner_camera()
     parameters = ["right_m", "f_number", "focus_distance_m", rc.Variable.thickness(1)]
-    settings = {"spp": 4, "control_spp": 4, "max_bounces": 0}
+    settings = {"spp": 4, "control_spp": 4, "max_bounces": 0, "device": "cpu"}
     pictures = rc.render_gradient(scene, camera, parameters, **settings)
     assert pictures.shape == (4, 8, 8, 3)
     reverse = rc.render_gradient(scene, camera, parameters, ADJOINT, **settings)
@@ -187,27 +199,92 @@ def test_a_direction_is_the_sum_of_its_parameters() -> None:
     assert both == pytest.approx(2 * focus - 3 * thickness, abs=1e-9 * max(abs(focus), abs(thickness)))
 
 
-def test_even_light_has_no_derivative_by_pose() -> None:
+def test_even_light_has_no_derivative_by_pose(device: str) -> None:
     # The control variate is the radiance itself.
-    gradient = rc.render_gradient(sky(), corner_camera(), ["right_m", "up_m", "yaw_deg"], ADJOINT, spp=4)
+    gradient = rc.render_gradient(sky(), corner_camera(), ["right_m", "up_m", "yaw_deg"], ADJOINT, spp=4, device=device)
     assert np.all(np.abs(gradient) < 1e-4)
 
 
-def test_even_light_has_none_at_a_fisheyes_border() -> None:
+def test_even_light_has_none_at_a_fisheyes_border(device: str) -> None:
     """Interior and boundary cancel. Rays that leave the steep first surface by its rim, 110 degrees from the axis,
     cross the rim's plane on the other side of the rim."""
     lens = rc.Lens.load("fisheye-6mm-220deg").focused(1).stopped_down(8)
     camera = rc.Camera(lens, film=rc.Film(0.8, 0.8, (8, 8), shift_mm=(11.1, 0.7)), exposure_time_s=1.0)
     parameters = ["right_m", "backward_m"]
     found, error = estimate(
-        lambda seed: rc.render_gradient(sky(), camera, parameters, np.ones((8, 8, 3)), spp=64, seed=seed, control_spp=0)
+        lambda seed: rc.render_gradient(
+            sky(), camera, parameters, np.ones((8, 8, 3)), spp=64, seed=seed, control_spp=0, device=device
+        )
     )
     assert np.all(np.abs(found) < ERRORS * error)
-    boundary = rc._core._PictureGradient(sky(), camera, rc.RenderSettings(effects=(), filter="tent"), []).reverse(
+    settings = rc.RenderSettings(effects=(), filter="tent")
+    boundary = rc._core._PictureGradient(sky(), camera, settings, [], device).reverse(
         np.ones((8, 8, 3)), None, seed=0, spp=1, outline_spp=64, terms="boundary"
     )
     # The boundary of one of the two parameters alone is many standard errors: the test can fail.
     assert abs(1000 * boundary[8]) > 20 * error[1]
+
+
+def tilted() -> rc.Camera:
+    """corner_camera with a lens that has no symmetry: an element is decentred, and the last surface tilted."""
+    camera = corner_camera()
+    lens = camera.lens.with_surface(2, decentre_mm=(0.2, -0.1, 0.0), returns=True)
+    return camera.replace(lens=lens.with_surface(10, tilt_deg=(0.5, 0.3, 0.0)))
+
+
+def with_aspheres() -> rc.Camera:
+    lens = rc.Lens.load("phone-4mm").focused(2.0)
+    return rc.Camera(lens, film=rc.Film(0.4, 0.4, (8, 8), shift_mm=(1, 0.7)), exposure_time_s=1.0)
+
+
+@needs_gpu
+@pytest.mark.parametrize("bounces", [0, 3])
+@pytest.mark.parametrize("effects", [(), ("dispersion",)])
+@pytest.mark.parametrize("camera", [corner_camera, tilted, with_aspheres])
+def test_devices_agree(camera: Callable[[], rc.Camera], effects: tuple[str, ...], bounces: int) -> None:
+    """With the same seed, samples differ by roundings alone, which may bring a few of them to another surface: less
+    than a tenth of their noise. With other seeds, the means differ by their noise."""
+    scene, taken_by = stripes(), camera()
+    variables = [rc.Variable.radius(1), rc.Variable.thickness(2), rc.Variable.index(3), rc.Variable.decentre(3)]
+    parameters = ["right_m", "backward_m", "yaw_deg", "film_tilt_x_deg", "focus_distance_m", *variables]
+
+    def on(device: str, first: int = 0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return estimate(
+            lambda seed: rc.render_gradient(
+                scene,
+                taken_by,
+                parameters,
+                ADJOINT,
+                spp=32,
+                seed=first + seed,
+                device=device,
+                effects=effects,
+                max_bounces=bounces,
+            )
+        )
+
+    (mean, error), (same, _), (other, other_error) = on("cpu"), on("cuda"), on("cuda", 100)
+    assert np.all(np.abs(same - mean) < 0.1 * error)
+    assert np.all(np.abs(other - mean) < ERRORS * np.hypot(error, other_error))
+
+
+@needs_gpu
+def test_a_gpu_gives_the_same_bits_again() -> None:
+    def gradient() -> NDArray[np.float64]:
+        return rc.render_gradient(stripes(), corner_camera(), ["up_m", rc.Variable.radius(0)], ADJOINT, device="cuda")
+
+    assert np.array_equal(gradient(), gradient())
+
+
+@needs_gpu
+def test_what_gpus_do_not_support_is_refused_in_one_line() -> None:
+    with pytest.raises(rc.InputError, match=r"in forward mode run on the CPU: use device=\"cpu\"$"):
+        rc.render_gradient(sky(), corner_camera(), "up_m", device="cuda")
+    lens = rc.Lens.load("anamorphic-31mm").focused(2.0)
+    camera = rc.Camera(lens, film=rc.Film(0.8, 0.8, (8, 8)))
+    with pytest.raises(rc.InputError, match=r"do not support freeform surfaces, and lens .* has one"):
+        rc.render_gradient(sky(), camera, "up_m", ADJOINT, device="cuda")
+    rc.render_gradient(sky(), camera, "up_m", ADJOINT, spp=1)  # the CPU is chosen
 
 
 @pytest.mark.parametrize(

@@ -81,7 +81,7 @@ def test_pictures_equal_the_film_of_gradients(device: str, filter: str, effects:
     """Gradients divide the light of each sample among all pixels that it reaches."""
     scene, camera = stripes(), lens_camera()
     settings = rc.RenderSettings(filter=filter, spp=64, effects=effects, max_bounces=0)
-    film = rc._core._PictureGradient(scene, camera, settings, [])
+    film = rc._core._PictureGradient(scene, camera, settings, [], device)
     wanted, wanted_error = estimate(lambda seed: film.picture(seed=1000 + seed, spp=64))
     found, error = estimate(lambda seed: rc.render(scene, camera, settings=settings, seed=seed, device=device).pixels)
     assert np.all(np.abs(found - wanted) < ERRORS * np.hypot(error, wanted_error))

@@ -4,10 +4,13 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "doctest/doctest.h"
 #include "optics/derivatives/dual_path.hpp"
+#include "optics/derivatives/outline_rays.hpp"
 #include "optics/derivatives/tangent_path.hpp"
+#include "optics/lens/focus.hpp"
 #include "optics/lens/lens_changes.hpp"
 #include "optics/trace/film_frame.hpp"
 #include "refusal.hpp"
@@ -222,6 +225,56 @@ std::vector<LensVariable> all_variables() {
     return list;
 }
 
+/// `sums` of trace_tangents_to_scene for one ray, as a GPU traces it: only numbers that derivatives depend on are
+/// added, in lane 0.
+struct SumsOfOneRay {
+    TangentPath::Sums& to;
+    std::vector<std::uint32_t> used;
+    AdjointStep<1> step{};
+    Lanes<double, 1> of_pose[6]{};
+
+    AdjointStep<1>& surface(int) { return step; }
+    AdjointStep<1>& film() { return step; }
+    NoFreeforms forms(int) const { return {}; }
+    Lanes<double, 1>& pose(int i) { return of_pose[i]; }
+    void finish(int k, const TangentRays<1>&) {
+        AdjointStep<TangentPath::kLanes>& sum = k == kStartOnFilm ? to.film : to.surfaces[static_cast<std::size_t>(k)];
+        for (int number = 0; number < kSurfaceNumbers; ++number) {
+            if (k == kStartOnFilm || (used[static_cast<std::size_t>(k)] >> number & 1u) != 0)
+                sum.sums[number][0] += step.sums[number][0];
+            step.sums[number][0] = 0;
+        }
+    }
+};
+
+/// Traces a lane of a block of rays alone. `start`: see TangentPath::trace; null: on the film.
+CameraDerivatives alone(const TangentPath& path, const TangentPath::Rays& block, const int* start,
+                        const Vec3d* tangent) {
+    TangentPath::Sums sums(path);
+    SumsOfOneRay of_ray{sums, path.numbers_in_use()};
+    TangentRays<1> ray;
+    ray.origin.set(0, block.origin[kLane]);
+    ray.direction.set(0, block.direction[kLane]);
+    ray.direction_tangent.set(0, block.direction_tangent[kLane]);
+    ray.status[0] = 0;
+    trace_tangents_to_scene(path.view(), [](int) { return OneWavelength{}; }, ray, start, tangent, of_ray);
+    for (int i = 0; i < 6; ++i) sums.pose[i][0] = of_ray.of_pose[i][0];
+    return path.derivatives(sums);
+}
+
+/// Both within the roundings of vector code, which contracts products and sums in other places.
+void check_equal(const CameraDerivatives& a, const CameraDerivatives& b) {
+    const auto check = [](const auto& some, const auto& other) {
+        REQUIRE(some.size() == other.size());
+        double largest = 0;
+        for (const double v : other) largest = std::max(largest, std::fabs(v));
+        for (std::size_t i = 0; i < some.size(); ++i) CHECK(std::fabs(some[i] - other[i]) <= 1e-12 * largest);
+    };
+    check(a.by_variable, b.by_variable);
+    check(a.by_film, b.by_film);
+    check(a.by_pose, b.by_pose);
+}
+
 const std::vector<FilmRay> kFilmRays = {{0, 0, 0.05, 0.02}, {5, -3, -0.2, 0.15}, {-6, 1, 0.25, 0.02}};
 
 }  // namespace
@@ -287,6 +340,89 @@ TEST_CASE("rims move at fixed scene rays: the stop, and rims of curved and of ti
                 CAPTURE(surface);
                 check_rim(lens, variables, ray, surface);
             }
+}
+
+TEST_CASE("a ray that is traced alone, as on GPUs, has the derivatives of a block of rays") {
+    LensSystem tilted = lens_with_film();
+    tilted.surfaces[1].placement = {{0.3, -0.2, 0.1}, {3, -2, 10}, false};
+    tilted.film_placement = {{0.2, 0.1, 0}, {2, -1, 0}, false};
+    const std::vector<LensVariable> few = {{LensQuantity::thickness, 1}, {LensQuantity::index, 2}};
+    for (const LensSystem& lens : {lens_with_film(), tilted})
+        for (const std::vector<LensVariable>& variables : {few, all_variables()})
+            for (const FilmRay& film_ray : kFilmRays) {
+                const TangentPath path(lens, lens.wavelength_nm, variables);
+                const TangentPath::Rays start = start_rays(lens, film_ray, {0.3, -0.7});
+                TangentPath::Rays rays = start;
+                TangentPath::Sums sums(path);
+                path.trace(rays, sums);
+                check_equal(alone(path, start, nullptr, nullptr), path.derivatives(sums));
+                for (int k = 0; k < path.surface_count(); ++k) {
+                    rays = start;
+                    sums.clear();
+                    std::array<int, TangentPath::kLanes> starts;
+                    starts.fill(k);
+                    std::array<Vec3d, TangentPath::kLanes> tangents{};
+                    tangents[kLane] = {0.6, 0.8, 0.1};
+                    path.trace(rays, sums, starts.data(), tangents.data());
+                    check_equal(alone(path, start, &k, &tangents[kLane]), path.derivatives(sums));
+                }
+            }
+}
+
+TEST_CASE("points of the pupil's outline that are searched on one line are those of a block of lines") {
+    const LensSystem lens = stopped_down(io::read_lens("double-gauss-50mm"), 4);
+    const TangentPath path(lens, lens.wavelength_nm, {});
+    const OutlineRays outline(lens, lens.wavelength_nm);
+    DirectionLine lines[OutlineRays::kLanes];
+    for (int i = 0; i < OutlineRays::kLanes; ++i) {
+        const double angle = 2 * std::numbers::pi * i / OutlineRays::kLanes, step = 0.2;
+        lines[i] = {{0.9 * i, -0.5 * i}, {-0.012 * i, 0.007 * i}, {step * std::cos(angle), step * std::sin(angle)}};
+    }
+    OutlinePoint points[OutlineRays::kMostPoints][OutlineRays::kLanes];
+    outline.find(path, lines, 1.6, nullptr, points);
+    int found = 0;
+    for (int i = 0; i < OutlineRays::kLanes; ++i) {
+        const DirectionLine line[1] = {lines[i]};
+        OutlinePoint own[kMostOutlinePoints][1];
+        find_outline(
+            outline.view(), line, 1.6,
+            [&](const DirectionLine(&on)[1], const double (&t)[1], int (&passes)[1]) {
+                TangentRays<1> rays = outline.view().start(on, t);
+                trace_lens(outline.view().lens, static_cast<LensRays<double, 1>&>(rays));
+                passes[0] = rays.status[0] == 0;
+            },
+            [&](const DirectionLine(&on)[1], const double (&t)[1], double (&clearance)[1]) {
+                measure_clearance<LensKind::any>(
+                    outline.view(), path.view(), [](int) { return OneWavelength{}; }, on, t, clearance);
+            },
+            [&](TangentRays<1>& rays, auto&& visit) {
+                TangentPath::Sums sums(path);
+                struct Visited : SumsOfOneRay {
+                    std::vector<TangentRays<1>> rays;
+                    void finish(int k, const TangentRays<1>& behind) {
+                        if (k != kStartOnFilm) rays.push_back(behind);
+                    }
+                } visited{{sums, {}}, {}};
+                trace_tangents_to_scene(
+                    path.view(), [](int) { return OneWavelength{}; }, rays, nullptr, nullptr, visited);
+                for (int k = 0; const TangentRays<1>& behind : visited.rays)
+                    visit(k++, behind.origin, behind.direction, behind.origin_tangent);
+            },
+            own);
+        for (int n = 0; n < OutlineRays::kMostPoints; ++n) {
+            const OutlinePoint &a = own[n][0], &b = points[n][i];
+            // An edge is found to 1.6 / 6 of 2^-26 of the line.
+            REQUIRE(a.t == doctest::Approx(b.t).epsilon(1e-8));
+            if (!(b.t > 0)) continue;
+            ++found;
+            CHECK(a.surface == b.surface);
+            CHECK(a.stop_rate == b.stop_rate);
+            CHECK(length(a.tangent - b.tangent) < 1e-7 * length(b.tangent));
+            CHECK(a.inverse_speed == doctest::Approx(b.inverse_speed).epsilon(1e-6));
+            CHECK(length(a.direction - b.direction) < 1e-7);
+        }
+    }
+    CHECK(found >= OutlineRays::kLanes / 2);
 }
 
 TEST_CASE("derivatives of pictures on a curved film are refused") {
