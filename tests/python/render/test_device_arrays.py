@@ -49,7 +49,7 @@ def test_shapes_types_and_copies() -> None:
         assert interface["data"][1] is False
         assert array.__dlpack_device__() == (2, 0)
     assert repr(rays.origins_m) == 'realcam.DeviceArray(shape=(120, 3), dtype=float64, device="cuda:0")'
-    with pytest.raises(ValueError, match="copy=False"):
+    with pytest.raises(ValueError, match="copy must not be False"):
         rays.weights.__array__(copy=False)
 
 
