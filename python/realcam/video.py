@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import io
+import secrets
 from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from pathlib import Path
@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ._core import Cancelled, ImageFileError, InputError
-from .files import check_target, write_whole
+from .files import check_target
 from .installation import imported
 
 # Code points of ITU-T H.273.
@@ -25,9 +25,9 @@ def write_video(path: Path, frames: Iterable[np.ndarray], frames_per_second: flo
     """
     av = imported("av", "video")
     check_target(path)
-    file = io.BytesIO()
+    temporary = path.with_name(f".realcam-{secrets.token_hex(8)}.mp4")
     try:
-        with av.open(file, "w", format="mp4") as container:
+        with av.open(str(temporary), "w", format="mp4") as container:
             stream = container.add_stream("libx264", rate=Fraction(frames_per_second).limit_denominator(1001))
             stream.pix_fmt = "yuv420p"
             stream.options = {"crf": "16"}
@@ -45,9 +45,11 @@ def write_video(path: Path, frames: Iterable[np.ndarray], frames_per_second: flo
                 picture = av.VideoFrame.from_ndarray(even, format="rgb24")
                 container.mux(stream.encode(picture.reformat(format="yuv420p", dst_colorspace="ITU709")))
             container.mux(stream.encode())
+        temporary.replace(path)
     except OSError as error:  # FFmpeg's errors derive from OSError
         raise ImageFileError(f"{path}: cannot be written: {error.strerror or error}") from None
-    write_whole(path, file.getvalue())
+    finally:
+        temporary.unlink(missing_ok=True)
 
 
 def check_film(path: str) -> None:
