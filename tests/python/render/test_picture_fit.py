@@ -85,10 +85,10 @@ def test_focus_and_yaw_are_found() -> None:
     family = rc.CameraParameters(camera, ["yaw_deg", "focus_distance_m"])
     truth = np.array([0.05, 2.15])
     random = np.random.default_rng(4)
-    exact = family.render(scene, truth, spp=2048, seed=9, max_bounces=0)[None].astype(float)
+    exact = family.render(scene, truth, spp=16384, seed=9, max_bounces=0)[None].astype(float)
     sigma = 0.02 * exact.mean()
     fit = rc.fit_pictures(
-        lambda values, block: family.render(scene, values, spp=256, seed=1, max_bounces=0)[None],
+        lambda values, block: family.render(scene, values, spp=2048, seed=1, max_bounces=0)[None],
         lambda values, block, seed: family.gradient(scene, values, spp=64, seed=100 + seed, max_bounces=0)[:, None],
         exact + sigma * random.normal(size=exact.shape),
         np.full(exact.shape, sigma**2),
@@ -97,7 +97,7 @@ def test_focus_and_yaw_are_found() -> None:
         blocks=(4, 2, 1),
     )
     off = fit.values - truth
-    # A chi-square of two degrees of freedom exceeds 20 once in 20,000 times; the noise of the renderings, a third of
+    # A chi-square of two degrees of freedom exceeds 20 once in 20,000 times; the noise of the renderings, a quarter of
     # that of the pictures, is in the margin.
     assert off @ np.linalg.solve(fit.covariance, off) < 20
     assert np.all(fit.errors < [0.01, 0.05])
