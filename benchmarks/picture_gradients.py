@@ -253,7 +253,19 @@ class Study:
         steps = CHANGE * np.sqrt((picture.astype(float) ** 2).mean() / np.maximum(squares, 0.1 * noise))
         # The rings must not reach their ends.
         is_ring = [kind_of(p) in ("focus", "stop") for p in self.parameters]
-        return np.where(is_ring, np.minimum(steps, 0.05 * self.family.values), steps)
+        steps = np.where(is_ring, np.minimum(steps, 0.05 * self.family.values), steps)
+        for i, unit in enumerate(np.eye(len(steps))):
+            while not all(self._exists(2 * sign * steps[i] * unit) for sign in (1, -1)):
+                steps[i] /= 2
+        return steps
+
+    def _exists(self, change: np.ndarray) -> bool:
+        """True if there is a camera whose values are changed by this; its surfaces may cross otherwise."""
+        try:
+            self.family.camera_at(self.family.values + change)
+        except rc.RealcamError:
+            return False
+        return True
 
     def _difference(self, seed: int) -> np.ndarray:
         """Differences of the loss for h and 2 h, (2 P), and of the pixels, (2 * 6 * H * W)."""
