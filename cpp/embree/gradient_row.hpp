@@ -11,7 +11,7 @@
 #include "kernels.hpp"
 #include "picture_gradient.hpp"
 
-// Samples of PictureGradient: those of one row of its film, in blocks, and the rays of which tangents are traced.
+// Blocks of samples of one row of the film of a PictureGradient, and the rays whose tangents are traced.
 
 namespace realcam {
 

@@ -26,7 +26,7 @@ templates_path = [str(Path(__file__).parent / "templates")]
 
 # Links within a page lead to headings by the names that GitHub gives them.
 myst_heading_anchors = 4
-# What stands indented in a page is of a terminal.
+# Indented blocks of pages are input and output of a terminal.
 highlight_language = "none"
 
 html_theme = "furo"

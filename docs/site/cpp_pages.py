@@ -15,12 +15,12 @@ from written import remove_others, write_text
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = ROOT / "cpp"
-# What is for compilers alone.
+# Macros and attributes, which only compilers need.
 _MACRO = re.compile(r"\b(?!REALCAM_NAMESPACE)REALCAM_\w+\s+|(?<=\s)\[\[.*?\]\]\s|\[\[.*?\]\]")
 _LAMBDA = re.compile(r"\[[&=\w\s,]*\]\s*\([^()]*\)\s*\{")
 _TYPE = re.compile(r"^(?:template\s*<.*>\s*)?(?:typedef\s+)?(struct|class|union|enum(?:\s+class)?)\s+(\w+)", re.DOTALL)
 _OPERATOR = re.compile(r"operator\s*[^\w\s(]+")
-# Where the list of a constructor's members begins.
+# The beginning of a constructor's member initialiser list.
 _MEMBERS = re.compile(r"\)((?:\s*(?:const|noexcept))*)\s*:(?!:)")
 
 
@@ -33,7 +33,7 @@ class Item(NamedTuple):
 
 
 def folders() -> dict[str, str]:
-    """The folders of realcam::optics, with what ARCHITECTURE.md says of their contents."""
+    """Returns the folders of realcam::optics with their contents according to ARCHITECTURE.md."""
     listed = (ROOT / "cmake" / "RealcamOptics.cmake").read_text(encoding="utf-8")
     core = re.search(r"set\(REALCAM_CORE_FOLDERS (.*?)\)", listed)
     assert core
@@ -77,7 +77,7 @@ def _without_details(header: str) -> str:
 
 
 def _declaration(rest: str) -> str:
-    """What begins `rest`, without a function's body."""
+    """Returns the declaration at the beginning of `rest`, without a function's body."""
     end = _end_of_head(rest)
     if end == len(rest):
         return ""
@@ -131,7 +131,7 @@ def _head_of_function(head: str) -> str:
 
 
 def _end_of_head(text: str) -> int:
-    """Where a declaration's first ";" or "{" stands outside of parentheses; the text's length without one.
+    """Returns the position of the first ";" or "{" outside of parentheses; the text's length if there is none.
 
     Braces that give a member its value belong to it: they come after a name or "=" and before the semicolon.
     """

@@ -10,7 +10,7 @@ import realcam as rc
 from effect_pictures import Pair
 from written import is_newer, remove_others, stand_in_for, write_text
 
-# What the words are from: those of rc.effects() are in the extension.
+# Files that contain the text of the pages; that of rc.effects() is in the extension.
 SOURCES = (Path(__file__), Path(effect_pictures.__file__), Path(rc._core.__file__))
 
 

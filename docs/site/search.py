@@ -1,4 +1,4 @@
-"""What the search of the built site finds, by the index that Sphinx has written for it."""
+"""Search of the built site, by the index that Sphinx has written for it."""
 
 from __future__ import annotations
 

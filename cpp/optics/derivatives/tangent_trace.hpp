@@ -158,8 +158,7 @@ REALCAM_HD inline bool replace_ended(TangentRays<N>& rays, Vec3Lanes<double, N>&
 /// trace_lens for this surface. Not REALCAM_INLINE: GCC's `flatten` stops at functions that are always inlined.
 template <LensKind kind, int N, class Media>
 REALCAM_HD inline void cross_surface(const TangentSurface& surface, const Media& media, LensRays<double, N>& rays) {
-    // The directions of the blades, of which there are none, are not set: that would be the largest store of a GPU's
-    // thread.
+    // The directions of the blades are not set: there are none, and this would be the largest store of a GPU's thread.
     LensView<double> one;
     one.surfaces = &surface.traced, one.count = 1, one.kind = kind;
     one.iris.blades = 0, one.iris.apothem = one.iris.curvature = 0;

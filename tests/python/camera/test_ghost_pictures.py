@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import warnings
 
 import numpy as np
@@ -299,6 +300,25 @@ def test_the_same_ghosts_each_time_whatever_the_threads() -> None:
     camera = rc.Camera(rc.Lens.load("double-gauss-50mm"), film=FILM, exposure_time_s=1)
     one, two = (ghosts(far_lamp(0.15, 0.1), camera, spp=8, threads=threads) for threads in (1, 2))
     np.testing.assert_array_equal(one, two)
+
+
+@pytest.mark.parametrize("effect", ["ghosts=0", "diffraction"])
+def test_tents_keep_the_light_of_ghosts_and_stars(effect: str, device: str) -> None:
+    """The values of the tents of all pixels at a film point add up to 1, as those of the boxes do; the light is in the
+    middle of the film."""
+    camera = rc.Camera(singlet(2.0).stopped_down(20), film=rc.Film(24, 16, (48, 32)), exposure_time_s=1)
+
+    def light(filter: str, seed: int) -> float:
+        scene = far_lamp(0.02, 0.01)
+        picture = ghosts(scene, camera, device=device, effect=effect, filter=filter, seed=seed)
+        return float(picture[..., 1].sum())
+
+    box, tent = (np.array([light(filter, seed) for seed in range(12)]) for filter in ("box", "tent"))
+    assert box.mean() > 0
+    error = np.hypot(box.std(ddof=1), tent.std(ddof=1)) / math.sqrt(12)
+    # Once in 100,000 by chance; float32 sums to 1e-6.
+    assert abs(tent.mean() - box.mean()) < 6 * error + 1e-5 * box.mean()
+    assert error < 0.02 * box.mean()
 
 
 @pytest.mark.parametrize(
