@@ -3,9 +3,9 @@
 
 namespace realcam {
 
-/// Adds a contribution to a sum that several threads may add to, in any order. They are rounded to multiples of 2^-24.
-/// Doubles hold up to 2^53 of these exactly, so that the sum is independent of the order. `dither`:
-/// random number from 0 to 1, which makes the rounding unbiased.
+/// Adds a contribution, rounded to a multiple of 2^-24, to a sum that several threads may add to, in any order. Doubles
+/// hold up to 2^53 of these units exactly, so that the sum is independent of the order. `dither`: random number from 0
+/// to 1, which makes the rounding unbiased.
 __device__ inline void add_exact(double& sum, double value, float dither) {
     atomicAdd(&sum, 0x1p-24 * floor(0x1p24 * value + static_cast<double>(dither)));
 }
