@@ -101,7 +101,7 @@ def test_films_say_their_shift_and_keep_it(tmp_path: Path) -> None:
     for wrong in ((math.nan, 0), (math.inf, 0), (0, -2e9)):
         with pytest.raises(rc.InputError, match="the film's shift must be two finite lengths"):
             rc.Film(10, 6, (100, 60), shift_mm=wrong)
-    assert rc.vision.camera_json(camera_with(PART))["film_shift_mm"] == [12, 7]
+    assert rc.camera_json(camera_with(PART))["film_shift_mm"] == [12, 7]
 
 
 def test_the_shift_moves_the_film_and_not_the_lens() -> None:
