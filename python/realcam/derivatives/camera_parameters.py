@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from .._core import Camera, InputError, Lens, RenderSettings, Scene
 from ..render import render
+from ..vision.rig import pose_of
 from .dual_array import Doubles
 from .picture import PARAMETERS, Floats, Parameter, final_settings, render_gradient, ring_rates
 from .variable import SETTABLE, Variable, check_surface_exists, with_values
@@ -80,7 +81,8 @@ class CameraParameters:
             right, up = (at.get(name, old) for name, old in zip(_SHIFT, camera.film.shift_mm, strict=True))
             camera = camera.replace(film=camera.film.replace(shift_mm=(right, up)))
         if any(name in at for name in (*_POSITION, *_ROTATION)):
-            position, axes = self._pose
+            pose = pose_of(camera)
+            axes, position = pose[:3, :3], pose[:3, 3]
             turned = axes @ rotation_matrix(self._rotation(at))
             moved = position + axes @ [at.get(name, 0.0) for name in _POSITION]
             camera = camera.replace(position=tuple(moved), look_at=tuple(moved - turned[:, 2]), up=tuple(turned[:, 1]))
@@ -128,15 +130,6 @@ class CameraParameters:
             return {parameter: 1.0}
 
         return [direction(parameter) for parameter in self.parameters]
-
-    @property
-    def _pose(self) -> tuple[Doubles, Doubles]:
-        """Position of the camera, (3,), m, and its axes right, up and backward as columns, (3, 3)."""
-        position, look_at, up = (np.array(part) for part in self.camera.pose_at(0.0))
-        backward = (position - look_at) / np.linalg.norm(position - look_at)
-        right = np.cross(up, backward)
-        right /= np.linalg.norm(right)
-        return position, np.stack([right, np.cross(backward, right), backward], axis=1)
 
     def _value_of(self, parameter: Parameter) -> float:
         """Value of a parameter of `camera`."""

@@ -65,7 +65,7 @@ def test_a_redistorting_map_is_a_camera_to_its_end(tmp_path: Path, camera: rc.Ca
     seen = np.isfinite(directions[:, 0])
     assert 0.2 < seen.mean() < 0.95  # the picture shows the end all around
     projected, status = found.project(directions[seen])
-    # Points less than two pixels from the end may lie between pixels of which one has no ray, and are then refused.
+    # A point less than two pixels from the end is refused if it lies beside a pixel without a ray.
     refused_px = 2 * 2 * np.pi * np.sqrt(seen.mean() * np.prod(camera.size) / np.pi)
     assert (status == rc.PointStatus.NO_PROJECTION).sum() < refused_px / np.prod(camera.size) * len(pixels)
     assert np.nanmax(np.linalg.norm(projected - pixels[seen], axis=1)) < largest_px

@@ -22,7 +22,7 @@ FRINGE = {"order": "fringe", "radius_mm": 14.0, "coefficients_mm": [0, 0.01, 0.0
 CON = {"kind": "con", "radius_mm": 15.0, "coefficients_mm": [0.05, -0.02, 0.01]}
 BFS = {"kind": "bfs", "radius_mm": 15.0, "coefficients_mm": [0.05, -0.02, 0.01]}
 
-# What a surface has, and the formats that lack it.
+# Features of a surface, and the formats that lack them.
 FEATURES: dict[str, tuple[dict, tuple[str, ...]]] = {
     "conic": ({"conic": -0.7}, ()),
     "even terms": ({"conic": 0.3, "aspheric_coefficients": EVEN}, ()),

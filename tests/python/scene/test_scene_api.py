@@ -40,7 +40,7 @@ def test_arrays_of_many_types_lists_and_strided_arrays() -> None:
 
 @pytest.mark.parametrize(
     ("arguments", "says"),
-    # What the numbers of a scene may be: tests/cpp/scene/test_scene_checks.cpp.
+    # tests/cpp/scene/test_scene_checks.cpp tests the ranges of the numbers of a scene.
     [
         ({"vertices_m": np.zeros((3, 2))}, r"vertices_m must be an array of shape \(N, 3\)"),
         ({"triangles": [0, 1, 2]}, r"triangles .*\(N, 3\)"),
