@@ -175,6 +175,10 @@ class Recipe:
         for key in values:
             if key not in _KINDS:
                 raise InputError(f'{name}:{lines[key]}: unknown key "{key:.40}"{_did_you_mean(key, list(_KINDS))}')
+        if values.get("lenses") == []:
+            raise InputError(
+                f"{name}:{lines['lenses']}: lenses must name at least one; without the key there are defaults"
+            )
         # Absolute, because the processes of an executor may have another current folder.
         folder = Path(path).parent.absolute()
         values = {key: _located(folder, key, value) for key, value in values.items()}

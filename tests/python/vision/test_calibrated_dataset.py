@@ -126,6 +126,7 @@ def test_the_size_of_a_calibration_may_be_scaled(tmp_path: Path) -> None:
         ('calibration = "camera.yml"\nrig = "camera.yml"', "recipe.toml:6: rig excludes calibration and stereo_m"),
         ('rig = "camera.yml"', "recipe.toml:5: .*expected a rig of two cameras or more"),
         ('depth = "z"', 'recipe.toml:5: depth: "z" is unknown; expected axis, ray'),
+        ("lenses = []", "recipe.toml:5: lenses must name at least one"),
         ('lenses = ["no-such-lens"]', "recipe.toml:5: .*no-such-lens"),
         ("readout_time_s = 1", "recipe.toml:5: next_after_s and readout_time_s must be 0.5 s or less"),
         ("square_m = 1" + 400 * "0" + ".0", "recipe.toml:5: "),
