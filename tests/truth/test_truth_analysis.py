@@ -184,6 +184,7 @@ def test_a_perfect_lens_has_the_mtf_and_the_airy_disc_of_its_pupil(f_number: flo
     figure(f"MTF of a perfect lens at f/{f_number:g} and its limit", "22 frequencies", worst, 0.005, "of contrast")
 
 
+@pytest.mark.slow
 def test_mtf_is_the_transform_of_the_point_spread_function() -> None:
     """Holds with vignetting, obstruction and defocus too; all but 0.3% of the light falls on the PSF array."""
     cases = [

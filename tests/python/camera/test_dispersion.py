@@ -242,6 +242,7 @@ def test_without_data_it_changes_nothing(name: str) -> None:
     assert np.sqrt(((seen - plain) ** 2).mean()) < 0.05 * plain.mean()
 
 
+@pytest.mark.slow
 def test_noise_where_colours_stay_in_a_pixel() -> None:
     """Noise that wavelength sampling adds to RGB, relative to the picture: 0.18 with a single wavelength per sample.
     With three wavelengths per sample, the remaining noise comes from the part of each channel that they miss and from

@@ -238,6 +238,7 @@ def ghosts_of_boards(
 
 
 @pytest.mark.parametrize("effects", [set(), {"dispersion", "film_reflection"}])
+@pytest.mark.slow
 def test_what_reflects_light_has_the_ghosts_of_what_emits_it(effects: set[str]) -> None:
     """Ghosts of reflecting surfaces are traced from the film, those of emitters from the light source."""
     lens = rc.Lens.load("double-gauss-50mm").with_coating("bare").focused(5.0)

@@ -112,6 +112,7 @@ def test_what_reflects_light_has_the_ghosts_of_what_emits_it(film_radius_mm: flo
 
 
 @pytest.mark.parametrize("name", UNUSUAL)
+@pytest.mark.slow
 def test_lamps_anywhere_give_numbers(name: str) -> None:
     lens = rc.Lens.load(name)
     if any(surface.type == "refracting" for surface in lens.surfaces):

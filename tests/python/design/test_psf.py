@@ -102,6 +102,7 @@ def test_real_lenses_agree_with_prysm(name: str, f_number: float) -> None:
     hold_core("Truth", what, "0 and 14 degrees", worst, 1e-3, "of the peak")
 
 
+@pytest.mark.slow
 def test_both_sums_agree() -> None:
     cases: list[tuple[str, float, float | None, float | None]] = [
         # Two rims let 0.6 of it pass. Its spot is wide: in infrared light a quarter of the rays follow its waves.

@@ -76,6 +76,7 @@ def landing_mm(lens: rc.Lens, rays: Rays, wavelength_nm: float | None = None) ->
     ("focus_m", "f_number"), [(math.inf, 0.0), (3.0, 8.0)], ids=["infinity, wide open", "3 m, f/8"]
 )
 @pytest.mark.parametrize("name", [*LENSES, *ASPHERIC])
+@pytest.mark.slow
 def test_light_that_comes_back_along_a_ray_meets_its_film_point(
     program: Callable[[str], Callable[..., Rays]], name: str, focus_m: float, f_number: float
 ) -> None:

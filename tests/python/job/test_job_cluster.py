@@ -43,6 +43,7 @@ def wait_for(units_done: int, folder: Path, program: subprocess.Popen[str]) -> N
         time.sleep(0.05)
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_is_replaced(tmp_path: Path) -> None:
     folder = tmp_path / "job"
     job = made(folder)
@@ -93,6 +94,7 @@ def scheduler(address: str) -> Iterator[subprocess.Popen[bytes]]:
         program.wait()
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_is_killed_stops_work_in_one_line(
     tmp_path: Path, address: str, scheduler: subprocess.Popen[bytes]
 ) -> None:

@@ -85,6 +85,7 @@ def test_it_is_never_on_by_itself_and_tells(tmp_path: Path) -> None:
 
 @wants_it
 @pytest.mark.parametrize("focus_m", [6.0, 1.0])
+@pytest.mark.slow
 def test_lamps_keep_their_light(focus_m: float) -> None:
     """Five small lamps before a lit wall: their light is traced, and stays what it is."""
     lamps = [scenes.quad((0.3 * x, 0.1 * x * x, -6), 0.01, emission=3e4) for x in range(-2, 3)]

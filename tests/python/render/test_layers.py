@@ -344,6 +344,7 @@ def far_point(tangent_x: float, tangent_y: float) -> rc.Scene:
     ids=["point", "lamp", "starburst", "ghosts"],
 )
 @pytest.mark.filterwarnings("ignore:ghosts")
+@pytest.mark.slow
 def test_variance_includes_light_that_starts_at_lamps(
     scene: rc.Scene, film: rc.Film, settings: dict[str, object], least: float, device: str
 ) -> None:

@@ -39,6 +39,7 @@ def use(bench: BenchPage, theme: str) -> None:
 
 
 @pytest.mark.parametrize("theme", THEMES)
+@pytest.mark.slow
 def test_the_page_follows_the_rules(bench: BenchPage, theme: str) -> None:
     """Checks the page at telephone size, on a desktop while it reports a problem, and with the gallery open."""
     bench.page.set_viewport_size({"width": 390, "height": 800})

@@ -295,6 +295,7 @@ def test_an_edited_lens_comes_back_after_another(bench: LensBench) -> None:
     assert not bench.history.can_undo
 
 
+@pytest.mark.slow
 def test_every_bundled_lens_can_be_put_on_the_camera(bench: LensBench) -> None:
     recorder = BenchRecorder(bench)
     bench.show()

@@ -46,6 +46,7 @@ def test_focus_by_its_ring(bench: BenchPage) -> None:
     bench.until_text("focus-text", lambda text: "∞" in text)
 
 
+@pytest.mark.slow
 def test_shutter_and_iso_brighten(bench: BenchPage) -> None:
     before = bench.picture().mean()
     bench.turn("shutter", "ArrowRight", 3)
@@ -60,6 +61,7 @@ def test_shutter_and_iso_brighten(bench: BenchPage) -> None:
     assert bench.picture().mean() == pytest.approx(before, rel=0.03)
 
 
+@pytest.mark.slow
 def test_automatic_exposure_and_its_correction(bench: BenchPage) -> None:
     bench.test_id("automatic").click()
     metered = bench.picture().mean()
@@ -97,6 +99,7 @@ def noise_of(status: str) -> float:
     return float(re.search(r"noise ([\d.]+) grey levels", status).group(1))
 
 
+@pytest.mark.slow
 def test_resolution_and_noise(bench: BenchPage) -> None:
     # With a seventh of the pixels, a frame may take more samples than 4 grey levels require, and so go below 2.
     bench.choose("resolution", "320 pixels across")
@@ -122,6 +125,7 @@ def test_zoom_positions(bench: BenchPage) -> None:
     assert np.abs(bench.picture() - wide).mean() > 10
 
 
+@pytest.mark.slow
 def test_the_zoom_ring(bench: BenchPage) -> None:
     assert not bench.test_id("zoom").is_visible()
     bench.choose_lens("zoom-25-50mm")
@@ -147,6 +151,7 @@ def test_the_zoom_ring(bench: BenchPage) -> None:
     bench.until_text("zoom-text", lambda text: text == middle)  # the whole drag at once
 
 
+@pytest.mark.slow
 def test_a_wipe_between_two_settings(bench: BenchPage) -> None:
     bench.choose("compare", "these settings")
     before = bench.picture().mean()
@@ -291,6 +296,7 @@ def test_undo_and_redo_by_buttons_and_keys(bench: BenchPage) -> None:
     until(redo.is_disabled, bool, "nothing to redo")
 
 
+@pytest.mark.slow
 def test_the_film_is_in_the_drawing(bench: BenchPage) -> None:
     """However far it is behind the glass."""
     for name in ("telephoto-200mm-inner-focus", "singlet-100mm", "phone-4mm"):
@@ -312,6 +318,7 @@ OLD = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_lenses_are_found_in_the_gallery(bench: BenchPage) -> None:
     bench.button("Gallery").click()
     gallery = bench.test_id("gallery")
@@ -434,6 +441,7 @@ def test_aspheric_coefficients_are_shown_whole(bench: BenchPage) -> None:
     assert any("e-" in value for value in values)
 
 
+@pytest.mark.slow
 def test_blades_and_film_are_chosen(bench: BenchPage) -> None:
     bench.test_id("blades").fill("6")
     bench.test_id("blades").press("Enter")
@@ -526,6 +534,7 @@ def plot(bench: BenchPage) -> str:
     return "" if bench.test_id("plot-busy").is_visible() else str(bench.test_id("plot-svg").inner_html())
 
 
+@pytest.mark.slow
 def test_a_plot_is_of_its_title_and_of_the_lens_as_it_stands(bench: BenchPage) -> None:
     first = until(lambda: plot(bench), lambda svg: "<svg" in svg, "a plot")
     # The page itself notes what is shown while it is busy, which may be for less time than between two looks of a test.
@@ -556,6 +565,7 @@ def shapes(svg: str) -> list[str]:
     return re.findall(r' d="([^"]*)"', svg)
 
 
+@pytest.mark.slow
 def test_a_closer_look(bench: BenchPage) -> None:
     until(lambda: plot(bench), lambda svg: "<svg" in svg, "a plot")
     for title in ("Ray fan", "MTF", "Distortion", "Relative illumination", "Pupil shapes"):
@@ -570,6 +580,7 @@ def test_a_closer_look(bench: BenchPage) -> None:
 # Files.
 
 
+@pytest.mark.slow
 def test_saving(bench: BenchPage, server: Server) -> None:
     bench.turn("aperture", "ArrowRight", 6)
     bench.until_text("aperture-text", lambda text: text == "Aperture f/4")
@@ -598,6 +609,7 @@ def test_saving(bench: BenchPage, server: Server) -> None:
 
 
 @pytest.mark.filterwarnings("ignore:not in the file")
+@pytest.mark.slow
 def test_the_button_asks_for_a_lens_file(bench: BenchPage, tmp_path: Path) -> None:
     (tmp_path / "mine.jpg").write_text("nonsense\n")
     for name in ("mine.jpg", "mine.zmx", "mine.seq", "mine.toml"):
@@ -639,6 +651,7 @@ def test_what_is_no_lens_file_is_told(bench: BenchPage, tmp_path: Path) -> None:
     assert bench.figure("effective_focal_length_mm") == before
 
 
+@pytest.mark.slow
 def test_a_page_that_is_loaded_again_brings_back_what_it_had(bench: BenchPage) -> None:
     before = bench.figure("effective_focal_length_mm")
     bench.edit(0, "radius_mm", "27.5")
@@ -682,6 +695,7 @@ def test_the_magnifier_enlarges_what_the_page_shows(bench: BenchPage) -> None:
 # Without a mouse.
 
 
+@pytest.mark.slow
 def test_the_keyboard_alone(bench: BenchPage) -> None:
     page = bench.page
     reached = set()
@@ -717,6 +731,7 @@ def test_the_keyboard_alone(bench: BenchPage) -> None:
     bench.until_text("shutter-text", lambda text: text != "Shutter 1/5 s")
 
 
+@pytest.mark.slow
 def test_a_click_soon_after_a_movement_focuses(bench: BenchPage) -> None:
     """While the first frame of all pixels is taken, which here takes a second or more."""
     bench.choose("resolution", "1920 pixels across")

@@ -42,6 +42,7 @@ def folder(server: Server, request: pytest.FixtureRequest) -> Path:
     return made
 
 
+@pytest.mark.slow
 def test_the_lens_beside_a_shot_is_asked_for_too(bench: BenchPage, folder: Path) -> None:
     (folder / "shot-lens.toml").write_text("precious")
     edited(bench)
@@ -71,6 +72,7 @@ def test_nothing_is_written_through_a_link_out_of_the_folders(bench: BenchPage, 
     assert not (folder / "shot.toml").exists()
 
 
+@pytest.mark.slow
 def test_two_windows_that_save_one_new_name(browser: Any, server: Server, bench: BenchPage, folder: Path) -> None:
     """The one that comes later is asked, even if neither saw the file of the other when it asked for its own."""
     edited(bench)
@@ -112,6 +114,7 @@ def error_of(path: Path, reference: rc.Image) -> float:
     return float(np.sqrt(np.mean((codes - reference.developed()) ** 2)))
 
 
+@pytest.mark.slow
 def test_a_picture_is_saved_with_the_noise_that_is_asked_for(bench: BenchPage, server: Server, folder: Path) -> None:
     """It has a button of its own, here clicked as soon as the page is open, when the picture has one sample."""
     shot = rc.Shot.load(server.shot)
@@ -126,6 +129,7 @@ def test_a_picture_is_saved_with_the_noise_that_is_asked_for(bench: BenchPage, s
     assert error_of(folder / "refined.png", reference) < 2.9
 
 
+@pytest.mark.slow
 def test_a_picture_is_saved_as_it_is_seen_now(bench: BenchPage, folder: Path) -> None:
     """It has all pixels of the shown picture, denoised or not, and is saved without waiting for the noise goal."""
     oiio = pytest.importorskip("OpenImageIO")
@@ -142,6 +146,7 @@ def test_a_picture_is_saved_as_it_is_seen_now(bench: BenchPage, folder: Path) ->
     assert np.abs(saved[..., :3].astype(float) - seen).mean() < 10
 
 
+@pytest.mark.slow
 def test_saving_a_refined_picture_is_given_up_or_cut_short(bench: BenchPage, folder: Path) -> None:
     bench.choose("resolution", "960 pixels across")
     bench.choose("refine to", "half a grey level (fine)")
@@ -157,6 +162,7 @@ def test_saving_a_refined_picture_is_given_up_or_cut_short(bench: BenchPage, fol
     assert (folder / "soon.png").stat().st_size > 1000
 
 
+@pytest.mark.slow
 def test_a_picture_is_downloaded(bench: BenchPage, server: Server, tmp_path: Path) -> None:
     oiio = pytest.importorskip("OpenImageIO")
     bench.picture()
@@ -182,6 +188,7 @@ def test_a_shot_is_downloaded_with_its_lens(bench: BenchPage, server: Server) ->
     assert shot.camera.lens.surfaces[0].radius_of_curvature_mm == 27.5
 
 
+@pytest.mark.slow
 def test_an_unknown_ending_is_told_where_one_looks(bench: BenchPage, folder: Path) -> None:
     for what, name in (("picture", "x.gif"), ("shot", "x.png"), ("lens", "x.txt")):
         ask_to_save(bench, what, f"{folder.name}/{name}")

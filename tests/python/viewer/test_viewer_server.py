@@ -51,6 +51,7 @@ def stream(server: Server, path: str, **options: object) -> websockets.ClientCon
     return websockets.connect(address, max_size=1 << 26, proxy=None, **options)
 
 
+@pytest.mark.slow
 def test_two_windows_do_not_disturb_each_other(browser: playwright.Browser, server: Server, bench: BenchPage) -> None:
     before, focal = bench.picture().mean(), bench.figure("effective_focal_length_mm")
     other = BenchPage(browser, server.url)
@@ -96,6 +97,7 @@ def test_malformed_messages_end_the_connection_and_no_more(bench: BenchPage, ser
     assert server.process.poll() is None
 
 
+@pytest.mark.slow
 def test_a_page_can_be_loaded_again_and_again(bench: BenchPage, server: Server) -> None:
     """Oftener than windows are kept at once: those whose page has gone make room."""
     for _ in range(5):  # of which the server keeps four, and one is there before
@@ -135,6 +137,7 @@ def test_what_is_no_http(server: Server) -> None:
     assert server.answers()
 
 
+@pytest.mark.slow
 def test_requests_that_are_left_are_no_errors(browser: playwright.Browser, server: Server) -> None:
     """Requests are abandoned as by a page that is closed while it loads."""
     paths = ["", "realcam-lenses/fisheye-6mm-220deg.svg", "_nicegui_ws/socket.io/?EIO=4&transport=polling"]
@@ -179,6 +182,7 @@ def test_uploads_are_bounded(server: Server, bench: BenchPage, tmp_path: Path) -
     assert getattr(refused.value, "code", 413) == 413
 
 
+@pytest.mark.slow
 def test_a_token_is_wanted_from_other_machines(browser: playwright.Browser, tmp_path: Path) -> None:
     shot = bench_shots.write_panels_shot(tmp_path)
     server = Server(shot, "--host", "0.0.0.0", "--allow-network", "--token", "a-token-of-the-test", "--quiet")
@@ -214,6 +218,7 @@ def test_a_dead_connection_does_not_keep_the_frames(bench: BenchPage, server: Se
         assert np.abs(bench.picture() - before).mean() > 10
 
 
+@pytest.mark.slow
 def test_rest_costs_nothing(browser: playwright.Browser, own: Server) -> None:
     """On a server of its own: windows that other tests have left may still plan or measure."""
     page = BenchPage(browser, own.url)
@@ -235,6 +240,7 @@ def test_rest_costs_nothing(browser: playwright.Browser, own: Server) -> None:
         page.close()
 
 
+@pytest.mark.slow
 def test_a_server_that_dies_and_comes_again(browser: playwright.Browser, own: Server) -> None:
     bench = BenchPage(browser, own.url)
     try:
@@ -296,6 +302,7 @@ class SlowLink:
                 line.close()
 
 
+@pytest.mark.slow
 def test_a_slow_link_shows_the_newest_frame_and_recovers(browser: playwright.Browser, own: Server) -> None:
     link = SlowLink(own.port)
     bench = BenchPage(browser, f"http://127.0.0.1:{link.port}/")

@@ -48,6 +48,7 @@ def corners_in(label: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     return points, np.array(pixels)
 
 
+@pytest.mark.slow
 def test_labels_have_the_geometry_of_the_calibration(tmp_path: Path) -> None:
     calibration = calibration_beside(tmp_path)
     text = 'calibration = "camera.yml"\nboard = [4, 3]\ndepth = "ray"\nstereo_m = 0.1\nlenses = ["auto"]\n'

@@ -146,7 +146,7 @@ TEST_CASE("a place that no ray reaches is no good ray") {
     CHECK_THROWS_AS(field_rays(lens, lens.wavelength_nm, {0.6}, hexapolar(6)), InputError);
 }
 
-TEST_CASE("rays that are aimed together are those that are aimed one by one") {
+TEST_CASE("rays that are aimed together are those that are aimed one by one" * doctest::test_suite("slow")) {
     std::vector<std::pair<std::string, RayLoop>> loops{{"core", RayLoop{}}};
     for (const realcam_kernels* kernels : available_kernels()) {
         RayLoop loop;

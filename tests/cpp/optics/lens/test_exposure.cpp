@@ -172,7 +172,8 @@ TEST_CASE("light on the axis is pi sin^2(theta'), a quarter two stops down, and 
     }
 }
 
-TEST_CASE("relative illumination is that of a brute-force integral over the last surface, focused near at f/11") {
+TEST_CASE("relative illumination is that of a brute-force integral over the last surface, focused near at f/11" *
+          doctest::test_suite("slow")) {
     for (const std::string& name : centred_lens_names()) {
         CAPTURE(name);
         LensSystem lens = io::read_lens(name);

@@ -118,7 +118,8 @@ TEST_CASE("the same with blades, whose corners reach past the circle of their ar
         }
 }
 
-TEST_CASE("a pupil found near that of a similar state holds all that passes, and as little else") {
+TEST_CASE("a pupil found near that of a similar state holds all that passes, and as little else" *
+          doctest::test_suite("slow")) {
     int moved_pupils = 0;
     for (const std::string& name : centred_lens_names())
         for (LensState state : states_of(name)) {

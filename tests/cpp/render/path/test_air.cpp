@@ -263,7 +263,7 @@ TEST_CASE("light that the air scatters once from a point light and a spot") {
           worst.errors, kErrors, "standard errors"});
 }
 
-TEST_CASE("samples of a lamp and samples of the phase function find the same light") {
+TEST_CASE("samples of a lamp and samples of the phase function find the same light" * doctest::test_suite("slow")) {
     // A lamp of two triangles beside the ray; the albedo is so small that light scattered twice does not count.
     constexpr float kAlbedo = 1e-5f;
     Worst worst;

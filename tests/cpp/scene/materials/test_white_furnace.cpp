@@ -117,7 +117,7 @@ TEST_CASE("smooth glass, films and mirrors lose nothing") {
 }
 
 // A coat's reflection weakens both ways of the light. What a rough metal loses by that comes back, as its table says.
-TEST_CASE("clear coats lose nothing") {
+TEST_CASE("clear coats lose nothing" * doctest::test_suite("slow")) {
     struct Coated {
         float weight, metallic;
     };
