@@ -30,9 +30,13 @@ _opening = threading.Lock()  # guards OpenImageIO's global option try_all_reader
 
 
 def _text(get: Callable[[], str]) -> str:
-    """Returns get(), even if it is invalid UTF-8: OpenImageIO's messages quote bytes of the file."""
+    """Returns get() with valid characters alone.
+
+    OpenImageIO's names and messages hold bytes of the file, which may be invalid UTF-8: its bindings then raise an
+    error or return surrogates.
+    """
     try:
-        return get()
+        return get().encode(errors="surrogateescape").decode(errors="replace")
     except UnicodeDecodeError as error:
         return error.object.decode(errors="replace")
 

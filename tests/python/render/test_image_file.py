@@ -16,6 +16,7 @@ import pytest
 import realcam as rc
 
 from .. import scenes
+from ..sky_files import write_exr_parts
 
 oiio = pytest.importorskip("OpenImageIO")
 
@@ -393,6 +394,15 @@ def test_a_broken_file_is_quoted_whatever_its_bytes_are(image: rc.Image, tmp_pat
     with pytest.raises(rc.ImageFileError) as error:
         rc.read_environment(path)
     assert "\n" not in str(error.value)
+
+
+def test_names_of_channels_may_be_any_bytes(tmp_path: Path) -> None:
+    path, light = tmp_path / "picture.exr", np.float32([[0.5, 2]])
+    write_exr_parts(path, [("", {"R": light, "G": light, "B": light, "mask~": light})])
+    whole = path.read_bytes()
+    assert whole.count(b"mask~\0") == 1
+    path.write_bytes(whole.replace(b"mask~\0", b"mask\xe9\0"))
+    np.testing.assert_array_equal(rc.read_environment(path), np.dstack([light] * 3))
 
 
 def test_mutations_become_pixels_or_an_error(tmp_path: Path) -> None:
