@@ -209,9 +209,14 @@ def _rates_of(lens: Lens, parameter: Parameter) -> tuple[dict[Variable, float], 
     raise InputError(f"unknown parameter {parameter!r:.60}; expected a Variable or one of {', '.join(PARAMETERS)}")
 
 
-def _rate(function: Callable[[float], NDArray[np.float64]], at: float) -> NDArray[np.float64]:
-    """Derivative of a smooth function by differences of fourth order: exact to about 1e-9 of itself."""
+def _rate(function: Callable[[float], NDArray[np.float64]], at: float, first: float) -> NDArray[np.float64]:
+    """Derivative of a function that is smooth from `first` on, by differences of fourth order: exact to about 1e-9 of
+    itself. They are one-sided if `first` is near."""
     step = _STEP * at
+    if at - 2 * step < first:
+        here = function(at)  # whose differences are exactly 0 for numbers that do not change
+        weights = enumerate((48, -36, 16, -3), start=1)
+        return np.asarray(sum(w * (function(at + i * step) - here) for i, w in weights) / (12 * step))
     near, far = function(at + step) - function(at - step), function(at + 2 * step) - function(at - 2 * step)
     return (8 * near - far) / (12 * step)
 
@@ -221,7 +226,7 @@ def ring_rates(lens: Lens, parameter: str) -> tuple[dict[Variable, float], float
 
     Those of the solution of the ring's equation, by the implicit function theorem. Raises InputError.
     """
-    set_ring, at = _RINGS[parameter](lens)
+    set_ring, at, first = _RINGS[parameter](lens)
     last = len(lens.surfaces) - 1
 
     def numbers(setting: float) -> NDArray[np.float64]:
@@ -229,20 +234,24 @@ def ring_rates(lens: Lens, parameter: str) -> tuple[dict[Variable, float], float
         distances = [s.thickness_mm for s in lens.surfaces[:-1]]
         return np.array([*distances, lens.film_distance_mm, lens.stop_semi_diameter_mm])
 
-    *rates, of_stop = _rate(numbers, at).tolist()
+    *rates, of_stop = _rate(numbers, at, first).tolist()
     variables = [*map(Variable.thickness, range(last)), Variable.film_distance()]
     return {v: rate for v, rate in zip(variables, rates, strict=True) if rate != 0}, of_stop
 
 
-def _focus_ring(lens: Lens) -> tuple[Callable[[float], Lens], float]:
-    """The function that focuses the lens, and its current focus distance in metres."""
+#: The function that sets a ring, the ring's current setting, and its smallest one.
+_Ring = tuple[Callable[[float], Lens], float, float]
+
+
+def _focus_ring(lens: Lens) -> _Ring:
+    """The ring of the focus distance in metres."""
     if not math.isfinite(lens.focus_distance_m):
         raise InputError("the derivative by focus_distance_m does not exist at infinity; focus the lens nearer")
-    return lens.focused, lens.focus_distance_m
+    return lens.focused, lens.focus_distance_m, lens.nearest_focus_m
 
 
-def _zoom_ring(lens: Lens) -> tuple[Callable[[float], Lens], float]:
-    """The function that zooms the lens, and its current focal length, focused at infinity, in mm."""
+def _zoom_ring(lens: Lens) -> _Ring:
+    """The ring of the focal length, focused at infinity, in mm."""
     ends = lens.zoom_focal_lengths_mm
     if not ends:
         raise InputError("the derivative by focal_length_mm needs a zoom lens")
@@ -251,14 +260,14 @@ def _zoom_ring(lens: Lens) -> tuple[Callable[[float], Lens], float]:
     focal_length = lens.focused(math.inf).first_order().effective_focal_length_mm
     if not min(ends) < (1 - 2 * _STEP) * focal_length or not (1 + 2 * _STEP) * focal_length < max(ends):
         raise InputError("the derivative by focal_length_mm does not exist at the ends of the zoom range")
-    return lens.zoomed, focal_length
+    return lens.zoomed, focal_length, min(ends)
 
 
-def _stop_ring(lens: Lens) -> tuple[Callable[[float], Lens], float]:
-    """The function that stops the lens down, and its current f-number."""
+def _stop_ring(lens: Lens) -> _Ring:
+    """The ring of the f-number."""
     if _is_wide_open(lens):
         raise InputError("the derivative by f_number does not exist wide open; stop the lens down first")
-    return lens.stopped_down, lens.f_number
+    return lens.stopped_down, lens.f_number, lens.wide_open().f_number
 
 
 def _is_wide_open(lens: Lens) -> bool:

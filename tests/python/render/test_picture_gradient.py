@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import realcam as rc
 from numpy.typing import NDArray
+from realcam.derivatives.picture import ring_rates
 
 from ..device_memory import needs_gpu
 from ..scenes import quad, scene_of, shifted, sky
@@ -320,6 +321,28 @@ def test_rings_at_their_ends_are_refused() -> None:
     with pytest.raises(rc.InputError, match="at the ends of the zoom range"):
         shortest = zoom.lens.zoomed(0).stopped_down(8)
         rc.render_gradient(sky(), zoom.replace(lens=shortest), "focal_length_mm", ADJOINT)
+
+
+@pytest.mark.parametrize("stops_below_wide_open", [1e-4, 2e-3, 0.1])
+def test_the_stop_ring_is_exact_beside_its_open_end(stops_below_wide_open: float) -> None:
+    """The f-number at infinity is inversely proportional to the radius of the diaphragm."""
+    lens = rc.Lens.load("cooke-triplet-50mm").focused(2)
+    lens = lens.stopped_down(lens.f_number * (1 + stops_below_wide_open))
+    of_distances, of_stop = ring_rates(lens, "f_number")
+    assert not of_distances
+    assert of_stop == pytest.approx(-lens.stop_semi_diameter_mm / lens.f_number, rel=1e-8)
+
+
+def test_the_focusing_ring_has_a_derivative_at_its_near_end() -> None:
+    """Beside the slope of a polynomial through settings of the ring."""
+    lens = rc.Lens.load("telephoto-200mm-inner-focus")
+    nearest = lens.nearest_focus_m
+    of_distances, _ = ring_rates(lens.focused(nearest), "focus_distance_m")
+    settings = nearest * (1 + 0.1 * np.arange(12) / 11)
+    for variable, rate in of_distances.items():
+        values = [variable.of(lens.focused(setting).surfaces[variable.surface]) for setting in settings]
+        slope = np.polynomial.Polynomial.fit(settings, values, 8).deriv()(nearest)
+        assert rate == pytest.approx(slope, rel=1e-6)
 
 
 def test_exposure_time_of_a_moving_scene_is_refused() -> None:
