@@ -136,7 +136,8 @@ class CameraParameters:
                     return dict(zip(names, matrix[:, names.index(parameter)].tolist(), strict=True))
             if parameter in rings:
                 of_distances, of_stop = rings[parameter]
-                return {**of_distances, **({"f_number": of_stop / by_f_number} if of_stop else {})}
+                rates: dict[Parameter, float] = dict(of_distances.items())
+                return rates | ({"f_number": of_stop / by_f_number} if of_stop else {})
             return {parameter: 1.0}
 
         return [direction(parameter) for parameter in self.parameters]
