@@ -1,6 +1,6 @@
 """Derivatives of pictures beside central differences with common random numbers: 30 parameters, six scenes.
 
-    python benchmarks/picture_gradients.py [--seeds 16] [--spp 128] [--scene NAME]
+    python benchmarks/picture_gradients.py [--device cuda:0] [--seeds 16] [--spp 128] [--scene NAME]
 
 For each scene, a loss is the sum of the pixels of a small picture with random weights. Its derivatives by all
 parameters (rc.render_gradient, reverse mode) and their central differences are estimated with `seeds` seeds each, whose
@@ -11,12 +11,15 @@ its bias is small. Prints tables in Markdown:
 - z scores of the losses' derivatives, and of the pixels of derivative pictures (forward mode) by six parameters;
 - the bias of the differences, in units of their standard error and relative to the derivative;
 - noise and time: the factor by which variance times time of differences exceeds that of one gradient, if 20
-  parameters share its pass.
+  parameters share its pass. Time is that of the processor, on a GPU that of the clock.
+
+Losses and differences run on `device`; derivative pictures, in forward mode, on the CPU.
 """
 
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -50,7 +53,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Estimate:
-    """Values of each seed, (S, ...), and CPU seconds of one seed."""
+    """Values of each seed, (S, ...), and seconds of one seed."""
 
     values: np.ndarray
     seconds: float
@@ -210,12 +213,13 @@ class Study:
     steps h and 2 h, (S, 2, P), and picture_differences (S, 2, 6, H, W).
     """
 
-    def __init__(self, case: Case, seeds: int, spp: int) -> None:
+    def __init__(self, case: Case, seeds: int, spp: int, device: str) -> None:
         self.case = case
+        self.clock = time.process_time if device == "cpu" else time.perf_counter
         self.parameters = parameters_of(case.camera.lens)
         self.family = rc.CameraParameters(case.camera, self.parameters)
         self.of_pictures = rc.CameraParameters(case.camera, PICTURES)
-        self.settings = {**case.settings, "spp": spp}
+        self.settings = {**case.settings, "spp": spp, "device": device}
         self.weights = np.random.default_rng(1).normal(size=(PIXELS[1], PIXELS[0], 3))
         picture = self.family.render(case.scene, self.family.values, seed=1, **self.settings)
         self.luminance = picture.sum(-1)
@@ -227,7 +231,7 @@ class Study:
         self.by_pictures = self._of_seeds(
             seeds,
             lambda seed: self.of_pictures.gradient(
-                case.scene, self.of_pictures.values, seed=500 + seed, **self.settings
+                case.scene, self.of_pictures.values, seed=500 + seed, **{**self.settings, "device": "cpu"}
             ).sum(-1),
         )
         both = self._of_seeds(seeds, self._difference)
@@ -236,17 +240,17 @@ class Study:
         self.differences = Estimate(both.values[:, :count].reshape(seeds, 2, -1), both.seconds / count)
         self.picture_differences = both.values[:, count:].reshape(seeds, 2, len(PICTURES), PIXELS[1], PIXELS[0])
 
-    @staticmethod
-    def _of_seeds(seeds: int, of_seed: Callable[[int], np.ndarray]) -> Estimate:
-        begin = time.process_time()
+    def _of_seeds(self, seeds: int, of_seed: Callable[[int], np.ndarray]) -> Estimate:
+        begin = self.clock()
         values = np.array([of_seed(seed) for seed in range(seeds)], float)
-        return Estimate(values, (time.process_time() - begin) / seeds)
+        return Estimate(values, (self.clock() - begin) / seeds)
 
     def _steps(self, picture: np.ndarray) -> np.ndarray:
         """(P,): steps that change the picture by CHANGE. The product of two independent estimates of a derivative
         picture has no bias by noise."""
         first, second = (
-            self.family.gradient(self.case.scene, self.family.values, seed=seed, **self.settings) for seed in (900, 901)
+            self.family.gradient(self.case.scene, self.family.values, seed=seed, **{**self.settings, "device": "cpu"})
+            for seed in (900, 901)
         )
         squares = (first * second).mean((1, 2, 3), dtype=float)
         noise = ((first - second) ** 2).mean((1, 2, 3), dtype=float)
@@ -323,12 +327,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=16)
     parser.add_argument("--spp", type=int, default=128)
+    parser.add_argument("--device", default="cpu", help="cpu, or one GPU, such as cuda:0")
     parser.add_argument("--scene", choices=list(CASES), action="append", help="One of the six; may be repeated")
     parser.add_argument("--list", action="store_true", help="Print the z scores of each parameter")
     arguments = parser.parse_args()
+    if arguments.seeds < 3:
+        parser.error("--seeds must be 3 or more: z scores of fewer have no finite deviation")
     studies = []
     for name in arguments.scene or CASES:
-        studies.append(Study(CASES[name](), arguments.seeds, arguments.spp))
+        begin = time.perf_counter()
+        studies.append(Study(CASES[name](), arguments.seeds, arguments.spp, arguments.device))
+        print(f"{name}: {time.perf_counter() - begin:.0f} s", file=sys.stderr, flush=True)
         if arguments.list:
             study = studies[-1]
             for parameter, step, z, mean, error in zip(

@@ -93,12 +93,16 @@ class CameraParameters:
         scene: Scene,
         values: ArrayLike,
         *,
+        device: str = "auto",
         settings: RenderSettings | None = None,
         **changes: Unpack[_SettingsKwargs],
     ) -> Floats:
-        """Returns the picture with these values, as rc.render_gradient differentiates it: lux seconds, (H, W, 3)."""
+        """Returns the picture with these values, as rc.render_gradient differentiates it: lux seconds, (H, W, 3).
+
+        device: as for rc.render.
+        """
         final = final_settings(settings, changes).with_(light_tracing="off")
-        return render(scene, self.camera_at(values), final, device="cpu").pixels
+        return render(scene, self.camera_at(values), final, device=device).pixels
 
     def gradient(
         self, scene: Scene, values: ArrayLike, adjoint: ArrayLike | None = None, **arguments: Any
@@ -107,26 +111,33 @@ class CameraParameters:
 
         adjoint, arguments: as for rc.render_gradient.
         """
-        return render_gradient(scene, self.camera_at(values), self.directions(values), adjoint, **arguments)
+        camera = self.camera_at(values)
+        return render_gradient(scene, camera, self._directions(values, camera), adjoint, **arguments)
 
     def directions(self, values: ArrayLike) -> list[dict[Parameter, float]]:
         """Returns the parameters of rc.render_gradient, at the camera of these values, that are its derivatives by the
         values."""
+        return self._directions(values, self.camera_at(values))
+
+    def _directions(self, values: ArrayLike, camera: Camera) -> list[dict[Parameter, float]]:
+        """See directions. camera: that of the values."""
         at = self._named(values)
         rotation = self._rotation(at)
         of_position, of_rotation = rotation_matrix(rotation).T, right_jacobian(rotation)
+        # The rings' scales are those of the lens of `self.camera`, whose surfaces are not changed.
+        nominal = self._turned(at)
+        rings = {p: ring_rates(nominal, p) for p in self.parameters if p in _RINGS}
+        moves_stop = any(of_stop for _, of_stop in rings.values())
+        by_f_number = ring_rates(camera.lens, "f_number")[1] if moves_stop else 1.0
 
         def direction(parameter: Parameter) -> dict[Parameter, float]:
             for names, matrix in ((_POSITION, of_position), (_ROTATION, of_rotation)):
                 if parameter in names:
                     return dict(zip(names, matrix[:, names.index(parameter)].tolist(), strict=True))
-            # The rings' scales are those of the lens of `camera`, whose surfaces are not changed.
-            if parameter in _RINGS:
-                of_distances, of_stop = ring_rates(self._turned(at), parameter)
+            if parameter in rings:
+                of_distances, of_stop = rings[parameter]
                 rates: dict[Parameter, float] = dict(of_distances.items())
-                if of_stop:
-                    rates["f_number"] = of_stop / ring_rates(self.camera_at(values).lens, "f_number")[1]
-                return rates
+                return rates | ({"f_number": of_stop / by_f_number} if of_stop else {})
             return {parameter: 1.0}
 
         return [direction(parameter) for parameter in self.parameters]

@@ -95,7 +95,7 @@ def render_gradient(
       a dict of such parameters and their rates: a parameter by which all of these change.
     adjoint: (H, W, 3), derivatives of a function of the picture's exposure (lux seconds) by its pixels; returns the
       derivatives of the function by the parameters, (P,). None: returns those of the picture, (P, H, W, 3).
-    outline_spp: samples per pixel on the outline of the pupil, by default spp / 4. control_spp: samples per pixel, of
+    outline_spp: samples per pixel on the outline of the pupil, by default spp / 16. control_spp: samples per pixel, of
       other random numbers, of a first picture that serves as control variate for the pose, by default spp / 4; 0: none.
     device: as in rc.render, but a single GPU. Only derivatives with an adjoint run on GPUs, for lenses without freeform
       surfaces; "auto" takes the CPU for all others. Both devices have the same samples, but for roundings.
@@ -122,7 +122,7 @@ def render_gradient(
     samples: dict[str, Any] = {
         "seed": final.seed,
         "spp": spp,
-        "outline_spp": max(1, spp // 4) if outline_spp is None else outline_spp,
+        "outline_spp": max(1, spp // 16) if outline_spp is None else outline_spp,
     }
     uses_control = control_count > 0 and numbers.move_camera
     control = _control(of_picture, final.seed, control_count) if uses_control else None

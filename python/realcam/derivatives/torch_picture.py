@@ -25,14 +25,15 @@ def torch_render(
     *,
     gradient_seed: int | None = None,
     gradient_spp: int | None = None,
+    device: str = "auto",
     settings: RenderSettings | None = None,
     **changes: Unpack[_SettingsKwargs],
 ) -> torch.Tensor:
     """Pictures of cameras, lux seconds, differentiable by torch.autograd with respect to the cameras' parameters.
 
     cameras: one Camera, or B of them with films of one resolution. parameters: tensors of values by parameter, see
-    CameraParameters; each is one number for all cameras, or (B,). One Camera with tensors (B,) is B cameras. settings,
-    changes: as for rc.render_gradient.
+    CameraParameters; each is one number for all cameras, or (B,). One Camera with tensors (B,) is B cameras. device, of
+    pictures and gradients, settings, changes: as for rc.render_gradient. Tensors are in host memory for all devices.
     Returns (B, H, W, 3), float32; (H, W, 3) for one Camera with single numbers.
 
     Backward is one pass of rc.render_gradient per camera for all parameters. Its samples, gradient_spp per pixel (None:
@@ -71,7 +72,7 @@ def torch_render(
         def forward(ctx: Any, values: torch.Tensor) -> torch.Tensor:
             ctx.save_for_backward(values)
             pictures = [
-                family.render(scene, row, settings=of_picture, seed=(seed + i) % 2**32)
+                family.render(scene, row, device=device, settings=of_picture, seed=(seed + i) % 2**32)
                 for i, (family, row) in enumerate(zip(families, values.numpy(), strict=True))
             ]
             return torch.from_numpy(np.stack(pictures))
@@ -82,7 +83,9 @@ def torch_render(
             (values,) = ctx.saved_tensors
             rows = zip(families, values.numpy(), adjoints.numpy(), strict=True)
             gradients = [
-                family.gradient(scene, row, adjoint, settings=of_gradient, seed=(second_seed + i) % 2**32)
+                family.gradient(
+                    scene, row, adjoint, device=device, settings=of_gradient, seed=(second_seed + i) % 2**32
+                )
                 for i, (family, row, adjoint) in enumerate(rows)
             ]
             return torch.from_numpy(np.stack(gradients))

@@ -8,6 +8,7 @@ import pytest
 import realcam as rc
 from numpy.typing import NDArray
 
+from ..device_memory import needs_gpu
 from .test_picture_gradient import ADJOINT, ERRORS, corner_camera, estimate, stripes
 
 POSE = ["right_m", "up_m", "backward_m", "pitch_deg", "yaw_deg", "roll_deg"]
@@ -116,3 +117,35 @@ def test_values_that_are_no_camera_are_refused() -> None:
     for values in ([4.0], [np.nan, 0.03], [0.5, 0.03]):
         with pytest.raises(rc.InputError):
             family.camera_at(values)
+
+
+def test_pictures_and_gradients_run_on_the_device_that_is_named() -> None:
+    family = rc.CameraParameters(corner_camera(), "up_m")
+    for run in (family.render, lambda *arguments, **named: family.gradient(*arguments, ADJOINT, **named)):
+        with pytest.raises(rc.InputError, match="tpu"):
+            run(stripes(), [0], spp=1, device="tpu")
+
+
+@needs_gpu
+def test_pictures_of_a_gpu_are_those_of_the_cpu() -> None:
+    family, scene = rc.CameraParameters(corner_camera(), "up_m"), stripes()
+    on_gpu, on_cpu = (family.render(scene, [0], spp=64, max_bounces=0, device=device) for device in ("cuda", "cpu"))
+    # Roundings move single samples over edges of the scene; each is at most 1 / 64 of a pixel's light.
+    np.testing.assert_allclose(on_gpu, on_cpu, atol=on_cpu.max() / 64)
+
+
+def test_rates_of_rings_are_those_of_distances_and_stop_at_changed_variables() -> None:
+    lens = rc.Lens.load("macro-105mm").focused(1.0).stopped_down(5.6)
+    family = rc.CameraParameters(rc.Camera(lens), ["focus_distance_m", "f_number", rc.Variable.thickness(0)])
+    at, step = family.values + np.array((-0.1, 0.5, 0.2)), 1e-4
+    there = family.camera_at(at).lens
+    wider, narrower = (there.stopped_down(there.f_number + sign * step) for sign in (-1, 1))
+    by_f_number = (narrower.stop_semi_diameter_mm - wider.stop_semi_diameter_mm) / (2 * step)
+    for column, direction in enumerate(family.directions(at)[:2]):
+        above, below = (family.camera_at(at + sign * step * np.eye(3)[column]).lens for sign in (1, -1))
+        gaps = np.array([[s.thickness_mm for s in lens.surfaces[:-1]] for lens in (above, below)])
+        rates = [direction.get(rc.Variable.thickness(i), 0.0) for i in range(len(gaps[0]))]
+        # The differences' error is of the order of step^2 of the rates, which are some 10 mm.
+        np.testing.assert_allclose(rates, (gaps[0] - gaps[1]) / (2 * step), atol=1e-5)
+        of_stop = (above.stop_semi_diameter_mm - below.stop_semi_diameter_mm) / (2 * step)
+        assert direction.get("f_number", 0.0) * by_f_number == pytest.approx(of_stop, abs=1e-6)

@@ -79,6 +79,11 @@ def test_backward_is_render_gradient_with_its_own_seed() -> None:
     assert value.grad is not None and value.grad.item() == pytest.approx(wanted[0], rel=1e-5)
 
 
+def test_pictures_run_on_the_device_that_is_named() -> None:
+    with pytest.raises(rc.InputError, match="tpu"):
+        rc.torch_render(stripes(), corner_camera(), {"up_m": torch.tensor(0.0)}, device="tpu", **SETTINGS)
+
+
 @pytest.mark.parametrize(
     ("parameters", "message"),
     [
