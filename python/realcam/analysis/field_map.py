@@ -12,8 +12,8 @@ from .._core import InputError, Lens, RayStatus
 from ..fields import STOP_PROBES, area_weighted_spot
 from ..short_text import ShortText
 from . import style
-from .fields import Bundles, Doubles, bundles_of, default_frequencies_per_mm
-from .mtf import by_waves
+from .fields import Bundles, Doubles, bundles_of, default_frequencies_per_mm, frequencies_of
+from .mtf import diffraction_transfer
 
 Point = tuple[float, float]
 
@@ -62,7 +62,8 @@ def _illumination(source: Bundles, point: Point, nm: float, _: float) -> float:
 
 def _mtf_along(axis: int) -> Callable[[Bundles, Point, float, float], float]:
     def mtf(source: Bundles, point: Point, nm: float, frequency: float) -> float:
-        return float(np.abs(by_waves(source, point, nm, np.array([frequency]), np.zeros(1)).otf[axis, 0, 0]))
+        transfer = diffraction_transfer(source, point, nm, np.array([frequency]), np.zeros(1))
+        return float(np.abs(transfer.otf[axis, 0, 0]))
 
     return mtf
 
@@ -104,7 +105,8 @@ def field_map(
         raise InputError("points must be at least 2 along x and along y")
     source = bundles_of(lens, object_distance_m, bundles)
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
-    frequency = float(default_frequencies_per_mm(lens)[1]) if frequency_per_mm is None else frequency_per_mm
+    middle = default_frequencies_per_mm(lens)[1] if frequency_per_mm is None else frequency_per_mm
+    frequency = float(frequencies_of(middle, "frequency_per_mm").max())
     x, y = (half * np.linspace(-1, 1, n) for half, n in zip(0.5 * np.array(lens.film_mm), points, strict=True))
     vectors = None
     if quantity == "distortion":
