@@ -21,8 +21,10 @@ from .fields import texts_of
 
 SIZES_IN = {"small": (4.2, 3.0), "large": (8.0, 5.6)}  # width and height of a figure with one plot, in inches
 # Colours with a contrast of at least 3 to both the white and the dark page; the panel of costs has them, too.
-PALETTE = ("#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a")
-PALETTE += ("#5b8f9e", "#e0709a", "#a0642d", "#8f8f8f", "#6f9a1f", "#c05ac8")
+PALETTE = (
+    *("#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f"),
+    *("#80803a", "#5b8f9e", "#e0709a", "#a0642d", "#8f8f8f", "#6f9a1f", "#c05ac8"),
+)
 BLUE, GREEN, RED = PALETTE[0], PALETTE[2], PALETTE[3]
 GREY = "#808080"
 

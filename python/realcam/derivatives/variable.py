@@ -172,8 +172,8 @@ def check_surface_exists(lens: Lens, surface: int) -> None:
 
 
 def checked(lens: Lens, variables: Sequence[Variable]) -> list[Variable]:
-    """Returns the variables as a list. Raises InputError if there are none, or for duplicates and unknown
-    quantities."""
+    """Returns the variables as a list. Raises InputError if there are none, or for duplicates, unknown quantities and
+    surfaces that the lens does not have."""
     if not variables:
         raise InputError("variables must have at least one Variable")
     if len({v.as_tuple() for v in variables}) < len(variables):
@@ -181,6 +181,8 @@ def checked(lens: Lens, variables: Sequence[Variable]) -> list[Variable]:
     for variable in variables:
         if variable.quantity not in QUANTITIES:
             raise InputError(f'unknown quantity "{variable.quantity}"; expected one of {", ".join(QUANTITIES)}')
+        if variable.quantity != "film_distance":
+            check_surface_exists(lens, variable.surface)
     return list(variables)
 
 
