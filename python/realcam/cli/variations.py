@@ -11,6 +11,7 @@ import numpy as np
 from .._core import Camera, InputError, Lens
 from ..number_text import number_text
 from ..shot import Shot
+from .options import number
 
 NAMES = ("f_number", "lens", "zoom")
 
@@ -43,13 +44,7 @@ def variations(shot: Shot, name: str, values: Sequence[str]) -> list[Variation]:
 
 
 def _at_f_number(camera: Camera, value: str) -> Camera:
-    try:
-        f_number = float(value)
-    except ValueError:
-        f_number = math.nan
-    if not (f_number > 0 and math.isfinite(f_number)):
-        raise InputError(f'"{value:.40}" is no f-number; expected a number such as 2.8')
-    return camera.replace(lens=camera.lens.stopped_down(f_number))
+    return camera.replace(lens=camera.lens.stopped_down(number(value, "f_number")))
 
 
 def _with_lens(camera: Camera, value: str) -> Camera:
