@@ -56,10 +56,6 @@ def _wavefront(source: Bundles, point: Point, nm: float, _: float) -> float:
     ).rms_waves
 
 
-def _illumination(source: Bundles, point: Point, nm: float, _: float) -> float:
-    return source.lens.film_pupil(point, nm).irradiance
-
-
 def _mtf_along(axis: int) -> Callable[[Bundles, Point, float, float], float]:
     def mtf(source: Bundles, point: Point, nm: float, frequency: float) -> float:
         transfer = diffraction_transfer(source, point, nm, np.array([frequency]), np.zeros(1))
@@ -73,7 +69,11 @@ QUANTITIES = {
     "wavefront": _Quantity("RMS wavefront error", "waves", _wavefront),
     "mtf-x": _Quantity("contrast of a pattern along x", "", _mtf_along(1)),
     "mtf-y": _Quantity("contrast of a pattern along y", "", _mtf_along(0)),
-    "illumination": _Quantity("illumination, relative to the film's centre", "%", _illumination),
+    "illumination": _Quantity(
+        "illumination, relative to the film's centre",
+        "%",
+        lambda source, point, nm, _: source.lens.film_pupil(point, nm).irradiance,
+    ),
     "distortion": _Quantity(
         "distortion, relative to half the film's diagonal", "%", lambda *_: np.nan
     ),  # by _distortion

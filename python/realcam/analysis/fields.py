@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import InputError, Lens, RayBundle
+from ..dispersion import LINE_C_NM, LINE_F_NM
 from ..fields import FieldPosition, angle_of_height, field_arguments
 
 Doubles = NDArray[np.float64]
-LINE_F_NM, LINE_D_NM, LINE_C_NM = 486.1327, 587.5618, 656.2725  # Fraunhofer lines
 
 
 class Bundles:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .._core import Glass, InputError, Lens, Surface, _form_terms
+from ..dispersion import LINE_D_NM
 
 FORM_TERMS = _form_terms()
 """Kinds of terms of the sag, as keywords of Surface."""
@@ -115,7 +116,7 @@ class Variable:
         if self.quantity == "conic":
             return surface.conic
         if self.quantity == "index":
-            return surface.material.index(587.5618)
+            return surface.material.index(LINE_D_NM)
         if self.quantity in ("tilt", "decentre"):
             return (surface.tilt_deg if self.quantity == "tilt" else surface.decentre_mm)[self.power]
         return surface.aspheric_coefficients.get(self.power, 0.0)
