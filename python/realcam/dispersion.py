@@ -7,6 +7,7 @@ from typing import Any
 
 from ._core import Lens
 
+LINE_F_NM, LINE_D_NM, LINE_C_NM = 486.1327, 587.5618, 656.2725  # Fraunhofer lines, as kLineF_nm and so on in C++
 POLE_NM = 200.0  # a typical resonance of optical glass, in the ultraviolet, towards which indices increase
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens
 from ..short_text import ShortText
-from .fields import Bundles, Doubles, three_fields, wavelengths_of
+from .fields import Bundles, Doubles, checked_count, three_fields, wavelengths_of
 
 
 @dataclass(frozen=True, repr=False)
@@ -45,6 +45,8 @@ def bokeh(
     focused on infinity. size: samples along each side of an image; rays: number of rays for each. fields_deg: None is
     the axis, 0.7 and 1 times the largest image height. wavelengths_nm: None is F line, design wavelength, C line.
     """
+    checked_count(size, "size")
+    checked_count(rays, "rays")
     distance = _out_of_focus_m(lens) if object_distance_m is None else object_distance_m
     source = Bundles(lens, distance)
     fields = three_fields(lens, fields_deg, source)

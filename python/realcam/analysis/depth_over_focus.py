@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import InputError, Lens
-from ..photography.depth import blur_diameter_mm, sharp_ranges, usual_circle_mm
+from ..photography.depth import blur_diameter_mm, circle_for, sharp_ranges
 from ..photography.formulas import ThinLens
 from ..short_text import ShortText
 from . import style
-from .fields import Doubles, numbers_of
+from .fields import Doubles, checked_count, numbers_of
 
 
 @dataclass(frozen=True, repr=False)
@@ -59,11 +59,13 @@ def depth_over_focus(
     open_f_number = lens.f_number
     stops = open_f_number * np.array([1.0, 2.0, 4.0]) if f_numbers is None else numbers_of(f_numbers, "f_numbers")
     lenses = [lens if stop == open_f_number else lens.stopped_down(float(stop)) for stop in stops]
-    circle = usual_circle_mm(lens.film_mm) if circle_of_confusion_mm is None else circle_of_confusion_mm
+    circle = circle_for(lens, circle_of_confusion_mm)
     if focus_m is None:
         thin = ThinLens.of(lenses[int(np.argmin(stops))])
         nearest = max(lens.nearest_focus_m, 12e-3 * thin.focal_length_mm)
-        distances: Doubles = np.geomspace(nearest, max(1e-3 * thin.hyperfocal_mm(circle), 4 * nearest), samples)
+        distances: Doubles = np.geomspace(
+            nearest, max(1e-3 * thin.hyperfocal_mm(circle), 4 * nearest), checked_count(samples)
+        )
     else:
         distances = numbers_of(focus_m, "focus_m")
     result = np.full((5, len(stops), len(distances)), np.nan)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from .._core import InputError, Lens
 from ..short_text import ShortText
 from . import style
-from .fields import Bundles, Doubles, bundles_of, fields_of
+from .fields import Bundles, Doubles, bundles_of, checked_count, fields_of
 
 PROJECTIONS = ("tangent", "angle")
 
@@ -118,6 +118,7 @@ def distortion_grid(
     Defaults as for distortion().
     Raises InputError if the film's corner is at 80 degrees or more: no plane grid fills the picture.
     """
+    checked_count(lines, "lines")
     source = bundles_of(lens, object_distance_m, bundles)
     curve = distortion(lens, wavelength_nm=wavelength_nm, samples=15, bundles=source)
     if curve.fields_deg.max() >= 80:
@@ -143,7 +144,7 @@ def distortion_grid(
 def plot_distortion(data: Distortion, axes: Axes) -> None:
     """Plots distortion in percent, with the field upwards."""
     axes.plot(data.percent, data.fields_deg, color=style.GREEN)
-    style.field_upwards(axes, data.fields_deg)
+    style.set_field_axis(axes, data.fields_deg)
     against = "f tan θ" if data.projection == "tangent" else "f θ"
     axes.set_xlabel(f"distortion against {against} / %")
     axes.set_title("Distortion")

@@ -79,7 +79,7 @@ def plot_field_curves(curves: FieldCurves, axes: Axes) -> None:
         axes.plot(curves.tangential_mm[w], curves.fields_deg, color=colour, label=f"tangential{suffix}")
         axes.plot(curves.sagittal_mm[w], curves.fields_deg, "--", color=colour, label=f"sagittal{suffix}")
     axes.plot(curves.petzval_mm, curves.fields_deg, ":", color=style.GREY, label="Petzval")
-    style.field_upwards(axes, curves.fields_deg)
+    style.set_field_axis(axes, curves.fields_deg)
     shown = np.concatenate([[0.0], curves.tangential_mm.ravel(), curves.sagittal_mm.ravel()])
     low, high = np.nanmin(shown), np.nanmax(shown)
     margin = 0.15 * (high - low) or 1.0

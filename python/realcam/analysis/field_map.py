@@ -12,8 +12,8 @@ from .._core import InputError, Lens, RayStatus
 from ..fields import STOP_PROBES, area_weighted_spot
 from ..short_text import ShortText
 from . import style
-from .fields import Bundles, Doubles, bundles_of, default_frequencies_per_mm
-from .mtf import by_waves
+from .fields import Bundles, Doubles, bundles_of, default_frequencies_per_mm, frequencies_of
+from .mtf import diffraction_transfer
 
 Point = tuple[float, float]
 
@@ -56,13 +56,10 @@ def _wavefront(source: Bundles, point: Point, nm: float, _: float) -> float:
     ).rms_waves
 
 
-def _illumination(source: Bundles, point: Point, nm: float, _: float) -> float:
-    return source.lens.film_pupil(point, nm).irradiance
-
-
 def _mtf_along(axis: int) -> Callable[[Bundles, Point, float, float], float]:
     def mtf(source: Bundles, point: Point, nm: float, frequency: float) -> float:
-        return float(np.abs(by_waves(source, point, nm, np.array([frequency]), np.zeros(1)).otf[axis, 0, 0]))
+        transfer = diffraction_transfer(source, point, nm, np.array([frequency]), np.zeros(1))
+        return float(np.abs(transfer.otf[axis, 0, 0]))
 
     return mtf
 
@@ -72,7 +69,11 @@ QUANTITIES = {
     "wavefront": _Quantity("RMS wavefront error", "waves", _wavefront),
     "mtf-x": _Quantity("contrast of a pattern along x", "", _mtf_along(1)),
     "mtf-y": _Quantity("contrast of a pattern along y", "", _mtf_along(0)),
-    "illumination": _Quantity("illumination, relative to the film's centre", "%", _illumination),
+    "illumination": _Quantity(
+        "illumination, relative to the film's centre",
+        "%",
+        lambda source, point, nm, _: source.lens.film_pupil(point, nm).irradiance,
+    ),
     "distortion": _Quantity(
         "distortion, relative to half the film's diagonal", "%", lambda *_: np.nan
     ),  # by _distortion
@@ -104,7 +105,8 @@ def field_map(
         raise InputError("points must be at least 2 along x and along y")
     source = bundles_of(lens, object_distance_m, bundles)
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
-    frequency = float(default_frequencies_per_mm(lens)[1]) if frequency_per_mm is None else frequency_per_mm
+    middle = default_frequencies_per_mm(lens)[1] if frequency_per_mm is None else frequency_per_mm
+    frequency = float(frequencies_of(middle, "frequency_per_mm").max())
     x, y = (half * np.linspace(-1, 1, n) for half, n in zip(0.5 * np.array(lens.film_mm), points, strict=True))
     vectors = None
     if quantity == "distortion":

@@ -10,19 +10,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import InputError, Lens, RayBundle
+from ..dispersion import LINE_C_NM, LINE_F_NM
 from ..fields import FieldPosition, angle_of_height, field_arguments
 
 Doubles = NDArray[np.float64]
-LINE_F_NM, LINE_D_NM, LINE_C_NM = 486.1327, 587.5618, 656.2725  # Fraunhofer lines
 
 
 class Bundles:
     """Cache of the ray bundles of object points, so that several plots share them.
 
-    object_distance_m: object plane to front vertex; None is the plane in focus.
+    object_distance_m: object plane to front vertex, positive or inf; None is the plane in focus. Raises InputError.
     """
 
     def __init__(self, lens: Lens, object_distance_m: float | None = None) -> None:
+        if object_distance_m is not None and not object_distance_m > 0:
+            raise InputError(f"object_distance_m must be a positive length, or inf; it is {object_distance_m}")
         self.lens = lens
         self.object_distance_m = object_distance_m
         self._bundles: dict[tuple[FieldPosition, float, int, int], RayBundle] = {}
@@ -86,14 +88,23 @@ def fields_of(lens: Lens, fields_deg: ArrayLike | None, count: int, bundles: Bun
     """(F,): the specified angles; by default `count` from the axis to the film corner, equidistant in image height."""
     if fields_deg is not None:
         return numbers_of(fields_deg, "fields_deg")
-    return field_angles_deg(lens, np.linspace(0, 1, checked_samples(count)), bundles)
+    return field_angles_deg(lens, np.linspace(0, 1, checked_count(count)), bundles)
 
 
-def checked_samples(samples: int) -> int:
-    """Returns the number of samples of a curve. Raises InputError unless it is 1 or more."""
-    if samples < 1:
-        raise InputError(f"samples must be 1 or more; it is {samples}")
-    return samples
+def checked_count(count: int, name: str = "samples") -> int:
+    """Returns a number of things. Raises InputError with the argument's name unless it is 1 or more."""
+    if count < 1:
+        raise InputError(f"{name} must be 1 or more; it is {count}")
+    return count
+
+
+def frequencies_of(values: ArrayLike, name: str = "frequencies_per_mm") -> Doubles:
+    """Returns a one-dimensional array of at least one frequency, 0 or more. Raises InputError with the argument's
+    name."""
+    frequencies = numbers_of(values, name)
+    if (frequencies < 0).any():
+        raise InputError(f"{name} must not be negative")
+    return frequencies
 
 
 def three_fields(lens: Lens, fields_deg: ArrayLike | None, bundles: Bundles) -> Doubles:

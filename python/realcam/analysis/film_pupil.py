@@ -61,9 +61,10 @@ def film_pupils(
 def plot_relative_illumination(data: FilmPupils, axes: Axes) -> None:
     """Plots relative illumination over the field, with the cos^4 law for comparison."""
     axes.plot(data.fields_deg, 100 * data.relative_illumination, color=style.BLUE, label="lens")
-    angle = np.radians(np.linspace(0, min(float(data.fields_deg.max()), 90.0), 61))
-    axes.plot(np.degrees(angle), 100 * np.cos(angle) ** 4, ":", color=style.GREY, label="cos⁴")
-    axes.set_xlim(0, max(float(data.fields_deg.max()), 1e-9))
+    low, high = style.field_limits(data.fields_deg)
+    angle_deg = np.linspace(max(low, -90.0), min(high, 90.0), 61)
+    axes.plot(angle_deg, 100 * np.cos(np.radians(angle_deg)) ** 4, ":", color=style.GREY, label="cos⁴")
+    axes.set_xlim(low, high)
     axes.set_ylim(0, max(105.0, 103 * float(data.relative_illumination.max())))
     axes.set_xlabel("field / °")
     axes.set_ylabel("relative illumination / %")

@@ -40,10 +40,10 @@ from .zernike import ZernikeFit, plot_zernike_fit, zernike_fit
 
 @dataclass(frozen=True)
 class PlotArguments:
-    """Arguments of a plot, with the ray bundles that plots share; None selects the plot's default.
+    """Arguments of a plot, with the ray bundles that plots share. An argument that is None has the plot's default.
 
     fields_deg: (F,); wavelengths_nm: (W,); frequencies_per_mm: (K,), periods per mm on the film.
-    method: of the MTF and the point spread function, see KINDS_WITH_METHODS.
+    method: of the MTF and the point spread function. PlotKind.options are those that apply to a plot.
     """
 
     lens: Lens
@@ -53,13 +53,13 @@ class PlotArguments:
     frequencies_per_mm: Sequence[float] | Doubles | None = None
     method: str | None = None
 
-    def field_deg(self, image_height: float) -> float:
-        """The field of a plot of one field; its default is a fraction of the largest image height.
+    def field_deg(self, default_height: float) -> float:
+        """Field angle of a plot of one field. Raises InputError if several are specified.
 
-        Raises InputError if several fields are specified.
+        default_height: fraction of the largest image height that is reached by the chief ray of the default field.
         """
         field = _only_value(self.fields_deg, "field")
-        return float(field_angles_deg(self.lens, image_height, self.bundles)[0]) if field is None else field
+        return float(field_angles_deg(self.lens, default_height, self.bundles)[0]) if field is None else field
 
     def wavelength_nm(self) -> float | None:
         """The wavelength of a plot of one wavelength. Raises InputError if several are specified."""
@@ -94,21 +94,33 @@ def _only_value(values: Sequence[float] | Doubles | None, name: str) -> float | 
     return float(values[0])
 
 
+# Options of `realcam lens plot`, and the arguments that they set.
+_FIELDS, _WAVELENGTHS, _DISTANCE = "--fields-deg", "--wavelengths", "--object-distance"
+_FREQUENCIES, _METHOD = "--frequencies", "--method"
+_ARGUMENTS: dict[str, Callable[[PlotArguments], Any]] = {
+    _FIELDS: lambda a: a.fields_deg,
+    _WAVELENGTHS: lambda a: a.wavelengths_nm,
+    _DISTANCE: lambda a: a.bundles.object_distance_m,
+    _FREQUENCIES: lambda a: a.frequencies_per_mm,
+    _METHOD: lambda a: a.method,
+}
+
+
 @dataclass(frozen=True)
-class Kind:
+class PlotKind:
     """A kind of plot."""
 
-    help: str  #: description of the plotted quantity in a few words, for the command line's help
     data: type  #: type of the result of `compute`
     compute: Callable[[PlotArguments], Any]
     shape: Callable[[Any], tuple[int, int]]  #: number of rows and columns of axes for the data
     plot: Callable[[Any, np.ndarray], None]  #: plots the data on an array of axes of that shape
     square: bool = False  #: True if the axes are square
     height: float = 1.0  #: height of the figure, relative to `style.SIZES_IN`
+    options: tuple[str, ...] = (_FIELDS, _WAVELENGTHS, _DISTANCE)  #: options of the command line that apply
 
 
 def _single(plot: Callable[[Any, Axes], None]) -> dict[str, Any]:
-    """`shape` and `plot` of a Kind with a single axes."""
+    """`shape` and `plot` of a PlotKind with a single axes."""
     return {"shape": lambda _: (1, 1), "plot": lambda data, axes: plot(data, axes[0, 0])}
 
 
@@ -135,7 +147,8 @@ def _plot_bokeh(data: Any, axes: np.ndarray) -> None:
 
 
 def _spots_through_focus(arguments: PlotArguments) -> Any:
-    """Spots on five planes, spaced by the diffraction-limited depth of focus, or by the geometric one if larger."""
+    """Spots on five planes, spaced by half the depth of focus: 2 lambda N^2 of diffraction, or the RMS spot's diameter
+    times N if that is larger, with the f-number N."""
     lens = arguments.lens
     step_mm = 2 * lens.wavelength_nm * 1e-6 * lens.first_order().f_number ** 2
     axial = spot_diagram(lens, [0.0], rings=4, object_distance_m=arguments.bundles.object_distance_m)
@@ -154,83 +167,80 @@ def _mtf(arguments: PlotArguments, compute: Callable[..., Any]) -> Any:
         return compute(lens, arguments.frequencies_per_mm, **keywords)
     if compute is mtf_through_focus:
         return compute(lens, arguments.frequency_per_mm(), **keywords)
-    highest = None if arguments.frequencies_per_mm is None else float(max(arguments.frequencies_per_mm))
-    return compute(lens, highest_per_mm=highest, **keywords)
+    return compute(lens, highest_per_mm=arguments.frequency_per_mm(), **keywords)
 
 
-def _with_bundles(arguments: PlotArguments) -> dict[str, Any]:
+def _monochromatic_with_bundles(arguments: PlotArguments) -> dict[str, Any]:
     """Keyword arguments of analyses at one wavelength that take ray bundles."""
     return {**arguments.monochromatic, "bundles": arguments.bundles}
 
 
-def _map_of(quantity: str) -> Kind:
-    """Kind of plot of one of field_map's QUANTITIES."""
+def _map_of(quantity: str) -> PlotKind:
+    """Returns the kind of plot of one of field_map's QUANTITIES."""
 
     def compute(arguments: PlotArguments) -> FieldMap:
         frequency = arguments.frequency_per_mm()
-        return field_map(arguments.lens, quantity, frequency_per_mm=frequency, **_with_bundles(arguments))
+        return field_map(arguments.lens, quantity, frequency_per_mm=frequency, **_monochromatic_with_bundles(arguments))
 
-    return Kind(f"{QUANTITIES[quantity].title}, over the film", FieldMap, compute, **_single(plot_field_map))
+    options = {
+        "illumination": (_WAVELENGTHS,),
+        "distortion": (),
+        "mtf-x": (_WAVELENGTHS, _DISTANCE, _FREQUENCIES),
+        "mtf-y": (_WAVELENGTHS, _DISTANCE, _FREQUENCIES),
+    }.get(quantity, (_WAVELENGTHS, _DISTANCE))
+    return PlotKind(FieldMap, compute, options=options, **_single(plot_field_map))
 
 
-#: Kinds of plots for which `method` selects how they are computed.
-KINDS_WITH_METHODS = ("mtf", "mtf-field", "mtf-focus", "psf")
-KINDS: dict[str, Kind] = {
-    "ray-fan": Kind(
-        "transverse ray aberrations over the stop",
+_MTF = (_FIELDS, _WAVELENGTHS, _DISTANCE, _FREQUENCIES, _METHOD)
+KINDS: dict[str, PlotKind] = {
+    "ray-fan": PlotKind(
         RayFan,
         lambda a: ray_fan(a.lens, **a.fields_and_wavelengths),
         lambda data: (2, len(data.fields_deg)),
         _plot_fans,
     ),
-    "spot": Kind(
-        "points at which the rays of an object point reach the film",
+    "spot": PlotKind(
         SpotDiagram,
         lambda a: spot_diagram(a.lens, **a.fields_and_wavelengths),
         _spots_shape,
         _plot_spots,
         True,
     ),
-    "spot-through-focus": Kind(
-        "spots on the film and on planes before and behind it",
+    "spot-through-focus": PlotKind(
         SpotDiagram,
         _spots_through_focus,
         _spots_shape,
         _plot_spots,
         True,
     ),
-    "longitudinal": Kind(
-        "longitudinal spherical aberration, by wavelength",
+    "longitudinal": PlotKind(
         LongitudinalAberration,
         lambda a: longitudinal_aberration(a.lens, a.wavelengths_nm, object_distance_m=a.bundles.object_distance_m),
+        options=(_WAVELENGTHS, _DISTANCE),
         **_single(plot_longitudinal_aberration),
     ),
-    "field-curves": Kind(
-        "tangential and sagittal focus over the field",
+    "field-curves": PlotKind(
         FieldCurves,
         lambda a: field_curves(a.lens, **a.fields_and_wavelengths),
         **_single(plot_field_curves),
     ),
-    "distortion": Kind(
-        "image height of the chief ray against the paraxial one",
+    "distortion": PlotKind(
         Distortion,
-        lambda a: distortion(a.lens, a.fields_deg, **_with_bundles(a)),
+        lambda a: distortion(a.lens, a.fields_deg, **_monochromatic_with_bundles(a)),
         **_single(plot_distortion),
     ),
-    "distortion-grid": Kind(
-        "a grid of squares as it appears on the film",
+    "distortion-grid": PlotKind(
         DistortionGrid,
-        lambda a: distortion_grid(a.lens, **_with_bundles(a)),
+        lambda a: distortion_grid(a.lens, **_monochromatic_with_bundles(a)),
+        options=(_WAVELENGTHS, _DISTANCE),
         **_single(plot_distortion_grid),
     ),
-    "lateral-colour": Kind(
-        "difference of image heights between wavelengths",
+    "lateral-colour": PlotKind(
         LateralColour,
         lambda a: lateral_colour(a.lens, **a.fields_and_wavelengths),
         **_single(plot_lateral_colour),
     ),
-    "seidel": Kind(
-        "third-order aberrations by surface",
+    "seidel": PlotKind(
         SeidelBars,
         lambda a: seidel_bars(
             a.lens,
@@ -238,23 +248,21 @@ KINDS: dict[str, Kind] = {
             object_distance_m=a.bundles.object_distance_m,
             bundles=a.bundles,
         ),
+        options=(_FIELDS, _DISTANCE),
         **_single(plot_seidel_bars),
     ),
-    "wavefront": Kind(
-        "optical path differences over the stop",
+    "wavefront": PlotKind(
         WavefrontMap,
         lambda a: wavefront_map(a.lens, a.field_deg(0), **a.monochromatic),
         **_single(plot_wavefront_map),
     ),
-    "zernike": Kind(
-        "the wavefront as Zernike polynomials, in Noll's order",
+    "zernike": PlotKind(
         ZernikeFit,
         lambda a: zernike_fit(a.lens, a.field_deg(0), **a.monochromatic),
         **_single(plot_zernike_fit),
         height=1.1,
     ),
-    "psf": Kind(
-        "point spread function on the film, with diffraction",
+    "psf": PlotKind(
         PointSpread,
         lambda a: point_spread(
             a.lens,
@@ -264,54 +272,50 @@ KINDS: dict[str, Kind] = {
             size=128,
             object_distance_m=a.bundles.object_distance_m,
         ),
+        options=(_FIELDS, _WAVELENGTHS, _DISTANCE, _METHOD),
         **_single(plot_point_spread),
     ),
-    "mtf": Kind(
-        "contrast over frequency", Mtf, lambda a: _mtf(a, mtf_over_frequency), **_single(plot_mtf_over_frequency)
-    ),
-    "mtf-field": Kind(
-        "contrast over the field", Mtf, lambda a: _mtf(a, mtf_over_field), **_single(plot_mtf_over_field)
-    ),
-    "mtf-focus": Kind(
-        "contrast through focus", Mtf, lambda a: _mtf(a, mtf_through_focus), **_single(plot_mtf_through_focus)
-    ),
-    "relative-illumination": Kind(
-        "illuminance of the film from a uniform object, relative to the axis",
+    "mtf": PlotKind(Mtf, lambda a: _mtf(a, mtf_over_frequency), options=_MTF, **_single(plot_mtf_over_frequency)),
+    "mtf-field": PlotKind(Mtf, lambda a: _mtf(a, mtf_over_field), options=_MTF, **_single(plot_mtf_over_field)),
+    "mtf-focus": PlotKind(Mtf, lambda a: _mtf(a, mtf_through_focus), options=_MTF, **_single(plot_mtf_through_focus)),
+    "relative-illumination": PlotKind(
         FilmPupils,
-        lambda a: film_pupils(a.lens, a.fields_deg, **_with_bundles(a)),
+        lambda a: film_pupils(a.lens, a.fields_deg, **_monochromatic_with_bundles(a)),
         **_single(plot_relative_illumination),
     ),
-    "pupil": Kind(
-        "outlines of the vignetted pupil (cat's eyes) over the field",
+    "pupil": PlotKind(
         FilmPupils,
-        lambda a: film_pupils(a.lens, a.fields_deg, samples=5, **_with_bundles(a)),
+        lambda a: film_pupils(a.lens, a.fields_deg, samples=5, **_monochromatic_with_bundles(a)),
         **_single(plot_pupil_shapes),
         height=0.5,
     ),
     **{f"{quantity}-map": _map_of(quantity) for quantity in QUANTITIES},
-    "bokeh": Kind(
-        "images of points out of focus",
+    "bokeh": PlotKind(
         Bokeh,
         lambda a: bokeh(a.lens, a.fields_deg, a.wavelengths_nm, object_distance_m=a.bundles.object_distance_m),
         lambda data: (1, len(data.fields_deg)),
         _plot_bokeh,
         True,
     ),
-    "depth-of-field": Kind(
-        "depth of field over the focus distance, at several apertures",
+    "depth-of-field": PlotKind(
         DepthOverFocus,
         lambda a: depth_over_focus(a.lens),
+        options=(),
         **_single(plot_depth_over_focus),
     ),
 }
 
 
 def compute(kind: str, arguments: PlotArguments) -> Any:
-    """Computes the data of a plot. Raises InputError for an unknown kind, and if the arguments do not apply to it."""
+    """Computes the data of a plot. Raises InputError for an unknown kind, and for arguments that do not apply to it."""
     if kind not in KINDS:
         raise InputError(f'unknown plot "{kind}"; expected one of {", ".join(KINDS)}')
-    if arguments.method is not None and kind not in KINDS_WITH_METHODS:
-        raise InputError(f"--method applies only to {', '.join(KINDS_WITH_METHODS)}; {kind} has a single method")
+    options = KINDS[kind].options
+    for option, argument in _ARGUMENTS.items():
+        if argument(arguments) is not None and option not in options:
+            raise InputError(
+                f"the plot {kind} takes no {option}, only {' and '.join(options) or 'options of the lens'}"
+            )
     return KINDS[kind].compute(arguments)
 
 

@@ -64,7 +64,7 @@ def plot_lateral_colour(data: LateralColour, axes: Axes) -> None:
             linewidth=0.8,
             label="Airy radius" if side > 0 else "_nolegend_",
         )
-    style.field_upwards(axes, data.fields_deg)
+    style.set_field_axis(axes, data.fields_deg)
     axes.set_xlabel("chief ray's shift on the film / µm")
     axes.set_title("Lateral colour")
     axes.legend(loc="best")

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from .._core import Lens, Surface
+from ..dispersion import LINE_D_NM
 from ..number_text import number_text
 from ..photography import magnification, photographic_figures
 
@@ -51,7 +52,7 @@ def _glass(surface: Surface) -> str:
     label = surface.material.label.strip("[]()")
     if not label or label[0].isdigit():
         return label
-    return f"{label}, {surface.material.index(587.5618):.5f}"
+    return f"{label}, {surface.material.index(LINE_D_NM):.5f}"
 
 
 def first_order(lens: Lens) -> Iterator[tuple[str, str]]:

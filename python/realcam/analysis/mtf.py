@@ -19,9 +19,10 @@ from .fields import (
     Doubles,
     analysis_inputs,
     bundles_of,
-    checked_samples,
+    checked_count,
     default_frequencies_per_mm,
     fields_of,
+    frequencies_of,
     numbers_of,
     texts_of,
 )
@@ -90,21 +91,15 @@ def mtf(
     """
     if method not in METHODS:
         raise InputError(f'unknown method "{method}"; expected diffraction or geometric')
-    source, fields, colours = analysis_inputs(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
-    frequencies = (
-        default_frequencies_per_mm(lens)
-        if frequencies_per_mm is None
-        else numbers_of(frequencies_per_mm, "frequencies_per_mm")
-    )
-    if (frequencies < 0).any():
-        raise InputError("frequencies_per_mm must not be negative")
-    fractions = _normalised(weights, len(colours))
+    source, fields, wavelengths = analysis_inputs(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
+    frequencies = default_frequencies_per_mm(lens) if frequencies_per_mm is None else frequencies_of(frequencies_per_mm)
+    fractions = _normalised(weights, len(wavelengths))
     planes = numbers_of(defocus_mm, "defocus_mm")
     result = np.zeros((2, len(planes), len(fields), len(frequencies)))
     limit = np.zeros((2, len(fields), len(frequencies)))
-    transfer_of = by_waves if method == "diffraction" else _by_rays
+    transfer_of = diffraction_transfer if method == "diffraction" else _geometric_transfer
     for f, field in enumerate(fields):
-        transfers = [transfer_of(source, float(field), float(colour), frequencies, planes) for colour in colours]
+        transfers = [transfer_of(source, float(field), float(nm), frequencies, planes) for nm in wavelengths]
         # All wavelengths refer to one film point, so that lateral colour counts: phases of the chief rays' offsets in y
         # (tangential) and x (sagittal) from the first wavelength's.
         offsets = np.array([one.chief_ray_mm - transfers[0].chief_ray_mm for one in transfers])[:, ::-1]
@@ -113,7 +108,7 @@ def mtf(
             sum(w * one.otf * phase[:, None] for w, one, phase in zip(fractions, transfers, phases, strict=True))
         )
         limit[:, f] = sum(w * one.limit for w, one in zip(fractions, transfers, strict=True))
-    return Mtf(fields, frequencies, planes, colours, fractions, result[0], result[1], limit[0], limit[1], method)
+    return Mtf(fields, frequencies, planes, wavelengths, fractions, result[0], result[1], limit[0], limit[1], method)
 
 
 @dataclass(frozen=True)
@@ -138,12 +133,14 @@ def _normalised(weights: ArrayLike | None, count: int) -> Doubles:
     return fractions
 
 
-def by_waves(source: Bundles, field: FieldPosition, colour: float, frequencies: Doubles, planes: Doubles) -> Transfer:
+def diffraction_transfer(
+    source: Bundles, field: FieldPosition, wavelength_nm: float, frequencies: Doubles, planes: Doubles
+) -> Transfer:
     """Transfer function with diffraction, by the autocorrelation of the pupil function.
 
-    colour: wavelength, nm; frequencies: (K,), per mm; planes: (D,), mm behind the film. Raises InputError.
+    frequencies: (K,), per mm; planes: (D,), mm behind the film. Raises InputError.
     """
-    pupil = pupil_function(source, field, colour)
+    pupil = pupil_function(source, field, wavelength_nm)
     directions = [lines_of(pupil, tangential=tangential) for tangential in (True, False)]
     return Transfer(
         np.stack([transfer(pupil, lines, frequencies, planes) for lines in directions]),
@@ -158,8 +155,10 @@ _ARMS, _NODES, _MAX_DOUBLINGS = 32, 6, 5
 _GOAL_ERROR, _MAX_ERROR = 1e-4, 1e-2
 
 
-def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles, planes: Doubles) -> Transfer:
-    """Geometric transfer function, with as many rays as the frequencies need; arguments as for by_waves.
+def _geometric_transfer(
+    source: Bundles, field: float, wavelength_nm: float, frequencies: Doubles, planes: Doubles
+) -> Transfer:
+    """Geometric transfer function, with as many rays as the frequencies need; arguments of diffraction_transfer.
 
     A sum over M radial scan lines is exact for fewer than M periods around the pupil, a sum over n Gauss nodes for
     about n periods along a line. The initial counts follow from the periods across the spot; they are doubled until the
@@ -167,7 +166,7 @@ def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles,
     """
 
     def bundle(doublings: int) -> RayBundle:
-        return source.at(field, colour, _ARMS << doublings, _NODES << doublings)
+        return source.at(field, wavelength_nm, _ARMS << doublings, _NODES << doublings)
 
     radius = np.linalg.norm(_points(bundle(0), planes, slice(None)), axis=2).max()
     periods = float(frequencies.max() * radius)
@@ -211,8 +210,9 @@ def mtf_over_frequency(
     **options: Unpack[MtfOptions],
 ) -> Mtf:
     """MTF from 0 to highest_per_mm; None is 2.5 times the highest default frequency. options: those of mtf()."""
-    top = 2.5 * float(default_frequencies_per_mm(lens)[-1]) if highest_per_mm is None else highest_per_mm
-    return mtf(lens, fields_deg, np.linspace(0, top, checked_samples(samples)), **options)
+    top = 2.5 * default_frequencies_per_mm(lens)[-1] if highest_per_mm is None else highest_per_mm
+    highest = float(frequencies_of(top, "highest_per_mm").max())
+    return mtf(lens, fields_deg, np.linspace(0, highest, checked_count(samples)), **options)
 
 
 def mtf_over_field(
@@ -242,9 +242,10 @@ def mtf_through_focus(
     frequency_per_mm: None is the middle default frequency. defocus_mm: None is f-number over frequency to either side,
     where a perfect lens has lost its axial contrast.
     """
-    frequency = float(default_frequencies_per_mm(lens)[1]) if frequency_per_mm is None else frequency_per_mm
+    middle = default_frequencies_per_mm(lens)[1] if frequency_per_mm is None else frequency_per_mm
+    frequency = float(frequencies_of(middle, "frequency_per_mm").max())
     planes = (
-        np.linspace(-1, 1, checked_samples(samples)) * lens.first_order().f_number / max(frequency, 1e-9)
+        np.linspace(-1, 1, checked_count(samples)) * lens.first_order().f_number / max(frequency, 1e-9)
         if defocus_mm is None
         else numbers_of(defocus_mm, "defocus_mm")
     )
@@ -300,6 +301,7 @@ def plot_mtf_through_focus(data: Mtf, axes: Axes) -> None:
     if data.method == "diffraction":
         axes.axhline(float(data.limit_tangential[0, 0]), linestyle=":", color=style.text_colour(), label="limit")
     style.zero_lines(axes, y=False)
-    axes.set_xlim(float(data.defocus_mm.min()), float(data.defocus_mm.max()))
+    if len(data.defocus_mm) > 1:
+        axes.set_xlim(float(data.defocus_mm.min()), float(data.defocus_mm.max()))
     axes.set_xlabel("plane behind the film / mm")
     _add_labels(axes, f"MTF at {data.frequencies_per_mm[0]:.4g}/mm through focus", data)

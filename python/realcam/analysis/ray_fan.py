@@ -12,7 +12,7 @@ from .._core import Lens
 from ..short_text import ShortText
 from . import style
 from .exit_rays import exit_rays
-from .fields import Bundles, Doubles, analysis_inputs
+from .fields import Bundles, Doubles, analysis_inputs, checked_count
 
 
 @dataclass(frozen=True, repr=False)
@@ -48,7 +48,7 @@ def ray_fan(
     Other defaults: 0, 0.7 and 1 times the largest image height; F line, design wavelength, C line.
     """
     source, fields, colours = analysis_inputs(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
-    pupil = np.linspace(-1, 1, samples)
+    pupil = np.linspace(-1, 1, checked_count(samples))
     zero = np.zeros(samples)
     pupil_points = np.concatenate([np.column_stack([zero, pupil]), np.column_stack([pupil, zero])])
     fans = np.empty((len(fields), len(colours), 2, samples))

@@ -12,7 +12,7 @@ from .._core import Lens
 from ..short_text import ShortText
 from . import style
 from .exit_rays import exit_rays
-from .fields import Doubles, wavelengths_of
+from .fields import Doubles, checked_count, wavelengths_of
 
 
 @dataclass(frozen=True, repr=False)
@@ -38,7 +38,7 @@ def longitudinal_aberration(
 ) -> LongitudinalAberration:
     """Computed with real rays of the axial point. Defaults: F line, design wavelength, C line; the plane in focus."""
     colours = wavelengths_of(lens, wavelengths_nm)
-    pupil = np.linspace(0, 1, samples)
+    pupil = np.linspace(0, 1, checked_count(samples))
     # At 1e-3 of the radius rays are paraxial within 1e-6 of the aberration; the axial ray itself has no intersection.
     heights = np.maximum(pupil, 1e-3)
     pupil_points = np.column_stack([np.zeros(samples), heights])

@@ -20,9 +20,12 @@ from ..drawing.themes import theme_named
 from .fields import texts_of
 
 SIZES_IN = {"small": (4.2, 3.0), "large": (8.0, 5.6)}  # width and height of a figure with one plot, in inches
-# Colours with a contrast of at least 3 to both the white and the dark page.
-BLUE, GREEN, RED = "#4a78d6", "#2f9a58", "#d9493c"
-FIELD_COLOURS = ("#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a")
+# Colours with a contrast of at least 3 to both the white and the dark page; the panel of costs has them, too.
+PALETTE = (
+    *("#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f"),
+    *("#80803a", "#5b8f9e", "#e0709a", "#a0642d", "#8f8f8f", "#6f9a1f", "#c05ac8"),
+)
+BLUE, GREEN, RED = PALETTE[0], PALETTE[2], PALETTE[3]
 GREY = "#808080"
 
 
@@ -38,8 +41,8 @@ def wavelength_colours(wavelengths_nm: NDArray[np.float64]) -> list[str]:
 
 
 def field_colour(index: int) -> str:
-    """Colour of the field, or another parameter, with this index; the colours repeat after eight."""
-    return FIELD_COLOURS[index % len(FIELD_COLOURS)]
+    """Colour of the field, or another parameter, with this index; the colours repeat after fourteen."""
+    return PALETTE[index % len(PALETTE)]
 
 
 @contextmanager
@@ -105,7 +108,7 @@ def field_limits(fields_deg: NDArray[np.float64]) -> tuple[float, float]:
     return low, high if high > low else low + 1e-9
 
 
-def field_upwards(axes: Axes, fields_deg: NDArray[np.float64]) -> None:
+def set_field_axis(axes: Axes, fields_deg: NDArray[np.float64]) -> None:
     """Formats the y axis as field angle upwards, and draws the line x = 0."""
     zero_lines(axes, y=False)
     axes.set_ylim(*field_limits(fields_deg))

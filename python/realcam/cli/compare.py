@@ -18,14 +18,14 @@ from ..image import Image
 from ..json_values import json_text
 from ..number_text import counted, number_text
 from ..progress import progress_bar
-from ..shot import Shot
+from ..shot import Shot, shot_with_words
 from . import lens_options, options
 from .command_words import plain_number
 from .grouped_options import grouped
-from .shot_options import load_shot, shot_options
+from .shot_options import shot_options, words_of
 from .variations import Variation, variations
 
-ShotOptions = shot_options("ShotOptions", without=("f_number", "resolution", "layers"))
+ShotOptions = shot_options("ShotOptions", without=("resolution", "layers"))
 
 
 @grouped
@@ -37,9 +37,6 @@ def compare(
     ],
     output: Annotated[Path, options.output("The sheet, as .png, .jpg, .tif, .webp, .svg or .pdf")],
     changes: ShotOptions,  # type: ignore[valid-type]
-    f_number: Annotated[
-        float | None, typer.Option(metavar="N", help="f-number of all pictures, with the brightness of the shot")
-    ] = None,
     size: Annotated[
         int, typer.Option(metavar="PIXELS", help="Pixels of the longer side of each picture", min=8, max=4096)
     ] = 480,
@@ -50,7 +47,10 @@ def compare(
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
-    """Take a shot several times with the same framing, brightness and noise, and put the pictures on one sheet."""
+    """Take a shot several times with the same framing, brightness and noise, and put the pictures on one sheet.
+
+    All pictures have the brightness of the shot, also with --f-number.
+    """
     from ..drawing.figure_files import check_figure_target
     from ..drawing.themes import theme_named
     from .sheet import save_sheet  # brings matplotlib, which other commands need not load
@@ -61,11 +61,13 @@ def compare(
     if not equals or not all(values.split(",")):
         raise InputError(f'--vary: "{vary:.60}": expected NAME=VALUE,..., as f_number=2,4,8')
     name = name.replace("-", "_")
+    words = words_of(changes)
+    f_number = words.pop("f_number", None)
     if f_number is not None and name == "f_number":
         raise InputError("--f-number cannot be combined with --vary f_number")
-    base_shot = load_shot(shot, changes, device)
-    if f_number is not None:  # keeps the brightness of the shot
-        base_shot = variations(base_shot, "f_number", [str(f_number)])[0].shot
+    base_shot = shot_with_words(shot, words, device)
+    if f_number is not None:
+        base_shot = variations(base_shot, "f_number", [f_number])[0].shot
     settings = base_shot.settings.with_(layers=GUIDES) if denoise else base_shot.settings
     pictures: list[tuple[str, Image]] = []
     kind = "F_NUMBER" if name == "f_number" else ""

@@ -13,6 +13,7 @@ import typer
 
 from .._core import InputError, Lens
 from ..derivatives.variable import Variable
+from ..dispersion import LINE_C_NM, LINE_D_NM, LINE_F_NM
 from ..json_values import json_text
 from ..number_text import counted, number_text
 from ..progress import progress_bar
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from ..optimisation.optimiser import Optimisation
 
 VARIABLE_GROUPS = ("radii", "thicknesses", "conics")
-COLOURS_NM = (486.1327, 587.5618, 656.2725)  # the lines F, d and C
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ def optimise(
         ]
     targets = Targets(
         fields_deg=fields,
-        wavelengths_nm=COLOURS_NM,
+        wavelengths_nm=(LINE_F_NM, LINE_D_NM, LINE_C_NM),
         focal_length_mm=focal_length or lens.first_order().effective_focal_length_mm,
         focal_length_weight=0.1,
         operands=operands,

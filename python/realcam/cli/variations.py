@@ -11,6 +11,7 @@ import numpy as np
 from .._core import Camera, InputError, Lens
 from ..number_text import number_text
 from ..shot import Shot
+from .options import number
 
 NAMES = ("f_number", "lens", "zoom")
 
@@ -32,33 +33,22 @@ def variations(shot: Shot, name: str, values: Sequence[str]) -> list[Variation]:
     """
     if name not in NAMES:
         raise InputError(f'"{name:.40}" cannot be varied; expected {", ".join(NAMES[:-1])} or {NAMES[-1]}')
-    make = {"f_number": _at_f_number, "lens": _with_lens, "zoom": _zoomed}[name]
     result = []
     for value in values:
-        camera = make(shot.camera, value)
+        camera = _varied(shot.camera, name, value)
         f_number_ratio = camera.lens.f_number / shot.camera.lens.f_number
         camera = camera.replace(exposure_time_s=shot.camera.exposure_time_s * f_number_ratio**2)
         result.append(Variation(_label_of(camera, name), replace(shot, camera=camera)))
     return result
 
 
-def _at_f_number(camera: Camera, value: str) -> Camera:
-    try:
-        f_number = float(value)
-    except ValueError:
-        f_number = math.nan
-    if not (f_number > 0 and math.isfinite(f_number)):
-        raise InputError(f'"{value:.40}" is no f-number; expected a number such as 2.8')
-    return camera.replace(lens=camera.lens.stopped_down(f_number))
-
-
-def _with_lens(camera: Camera, value: str) -> Camera:
+def _varied(camera: Camera, name: str, value: str) -> Camera:
+    if name == "f_number":
+        return camera.replace(lens=camera.lens.stopped_down(number(value, name)))
+    if name == "zoom":
+        return _framed_alike(camera, camera.lens.zoomed(value))
     lens = Lens.load(value).with_rings(f_number=camera.lens.f_number, opens_as_far_as_it_can=True)
     return _framed_alike(camera, lens)
-
-
-def _zoomed(camera: Camera, value: str) -> Camera:
-    return _framed_alike(camera, camera.lens.zoomed(value))
 
 
 def _framed_alike(camera: Camera, lens: Lens) -> Camera:

@@ -18,7 +18,7 @@ from ..calibration import Calibration
 from ..files import record_input
 from .calibrated import calibrations_in
 
-MOVES_FOR_S = 1.0  # duration of all motion in a scene, in seconds; every exposure and next picture must lie within it
+MOTION_S = 1.0  # duration of all motion in a scene, in seconds; every exposure and next picture must lie within it
 LABELS = ("depth", "mask", "motion", "flow")
 DEPTHS = ("axis", "ray")
 DEFAULT_SIZE = (640, 480)
@@ -26,8 +26,10 @@ _LENSES = ("double-gauss-50mm", "tessar-50mm", "sonnar-50mm", "phone-4mm", "fish
 # Keys that say which cameras there are; the values that other keys may have depend on them.
 _CAMERA_KEYS = ("calibration", "calibration_camera", "rig")
 _USED_SUFFIXES = ("mask", "next", "flow_visible")  # files of a sample that a camera's name could be taken for
-# File names have six digits for the picture's number; beyond the other limits a picture takes hours.
-_MAX = {"count": 10**6, "size": 32768, "objects": 1000, "board": 1000, "shard_size": 10**6}
+# File names have six digits for the picture's number; beyond the limits of numbers of things a picture takes hours.
+_MAX: dict[str, float] = {"count": 10**6, "size": 32768, "objects": 1000, "board": 1000, "shard_size": 10**6}
+# The scene is a floor of 18 m x 18 m: beyond these there is nothing to see.
+_MAX |= {"square_m": 10, "stereo_m": 100, "speed_m_s": 1000, "camera_speed_m_s": 1000, "f_stops": 1000, "iso": 10**7}
 
 
 @dataclass(frozen=True)
@@ -101,9 +103,9 @@ class Recipe:
             low, high = getattr(self, name)
             if not 0 <= low <= high:
                 raise InputError(f"{name} must be a range, the smaller number first")
-        if max(self.next_after_s, self.readout_time_s) > MOVES_FOR_S / 2 or self.camera_turn_deg_s[1] >= 180:
+        if max(self.next_after_s, self.readout_time_s) > MOTION_S / 2 or self.camera_turn_deg_s[1] >= 180:
             raise InputError(
-                f"next_after_s and readout_time_s must be {MOVES_FOR_S / 2} s or less, and camera_turn_deg_s below 180"
+                f"next_after_s and readout_time_s must be {MOTION_S / 2} s or less, and camera_turn_deg_s below 180"
             )
         if self.f_stops[0] < 1 or self.iso[0] <= 0:
             raise InputError("f_stops must be 1 or more, and iso above 0")
@@ -201,6 +203,7 @@ class Recipe:
         return tuple(self.models) or ("box", "ball", "pyramid")
 
 
+# Annotations of the fields as text, such as "tuple[int, ...]", for _converted.
 _KINDS: dict[str, str] = {
     f.name: str(f.type).replace("Mapping[str, str]", "texts by name") for f in dataclasses.fields(Recipe)
 }

@@ -13,7 +13,7 @@ from .._core import Camera, Film, InputError, Lens, Material, Scene
 from ..calibration.camera.making import posed
 from ..vision.rig import Rig, RigCamera, pose_of
 from .calibrated import calibrated_camera, poses_from_first
-from .recipe import MOVES_FOR_S, Recipe
+from .recipe import MOTION_S, Recipe
 
 Array = NDArray[np.float64]
 
@@ -98,8 +98,8 @@ def random_scene(recipe: Recipe, rng: np.random.Generator) -> RandomScene:
         speed, heading = rng.uniform(*recipe.speed_m_s), rng.uniform(0, 2 * np.pi)
         if speed > 0:
             end = matrix.copy()
-            end[[0, 2], 3] += MOVES_FOR_S * speed * np.array([np.cos(heading), np.sin(heading)])
-            scene = scene.moved(name, np.stack([matrix, end]), (0.0, MOVES_FOR_S))
+            end[[0, 2], 3] += MOTION_S * speed * np.array([np.cos(heading), np.sin(heading)])
+            scene = scene.moved(name, np.stack([matrix, end]), (0.0, MOTION_S))
         categories.append(category)
         centres.append(position + np.array([0, size / 2, 0]))
     corners = None
@@ -245,10 +245,10 @@ def _random_camera(
     speed_m_s, turn_deg_s = (rng.uniform(*each) for each in (recipe.camera_speed_m_s, recipe.camera_turn_deg_s))
     if speed_m_s > 0 or turn_deg_s > 0:
         velocity, angular_velocity = speed_m_s * _direction(rng), np.radians(turn_deg_s) * _direction(rng)
-        rotation = Rotation.from_rotvec(MOVES_FOR_S * angular_velocity)
-        end = position + MOVES_FOR_S * velocity
+        rotation = Rotation.from_rotvec(MOTION_S * angular_velocity)
+        end = position + MOTION_S * velocity
         motion = [
             (0.0, tuple(position), tuple(target), tuple(up)),
-            (MOVES_FOR_S, tuple(end), tuple(end + rotation.apply(target - position)), tuple(rotation.apply(up))),
+            (MOTION_S, tuple(end), tuple(end + rotation.apply(target - position)), tuple(rotation.apply(up))),
         ]
     return camera.replace(lens=lens, position=tuple(position), look_at=tuple(target), up=tuple(up), motion=motion)

@@ -1,4 +1,4 @@
-"""Differentiable ray tracing for PyTorch, by lens variables and rays. Needs the package torch."""
+"""Ray tracing that PyTorch differentiates with respect to lens variables and rays. Needs the package torch."""
 
 from __future__ import annotations
 
@@ -28,12 +28,13 @@ def trace_with_torch(
     """Lens.trace of the lens with `values` (V,) for its variables, differentiable by torch.autograd.
 
     origins_mm, directions: (N, 3), lens frame, in host memory. variables: curvatures, thicknesses, conics, aspheric
-    coefficients, indices, tilts and decentres. wavelength_nm: None is the design wavelength. start: "film" or "scene",
-    the side on which the rays enter the lens.
-    Returns origins, mm, and unit directions (N, 3), optical paths, mm (N,), in float64, and which rays pass (N,). Rays
-    that do not pass are zero and have no derivatives. First derivatives by origins, directions and values are
-    supported; second derivatives are not. Raises InputError for variables that the lens does not have, ImportError
-    without torch.
+    coefficients, indices, tilts and decentres; `values` are in their units. An index holds for all wavelengths: its
+    medium has no dispersion. wavelength_nm: None is the design wavelength. start: "film" or "scene", the side on which
+    the rays enter the lens.
+    Returns origins, mm, and unit directions (N, 3), optical paths, mm (N,), in float64, and booleans (N,): True if the
+    ray passes. Rays that do not pass are zero and have no derivatives. First derivatives by origins, directions and
+    values are supported; second derivatives are not. Raises InputError for variables that the lens does not have,
+    ImportError without torch.
     """
     import torch
 
@@ -67,16 +68,16 @@ def trace_with_torch(
 
         @staticmethod
         @torch.autograd.function.once_differentiable  # type: ignore[untyped-decorator]
-        def backward(ctx: Any, of_origins: Any, of_directions: Any, of_paths: Any, _: Any) -> Any:
+        def backward(ctx: Any, grad_origins: Any, grad_directions: Any, grad_paths: Any, _: Any) -> Any:
             inputs = ctx.saved_tensors  # origins, directions, values
             found = backpropagate_rays(
                 ctx.changed,
                 numbers(inputs[0]),
                 numbers(inputs[1]),
                 listed,
-                of_origins=of_origins.numpy(),
-                of_directions=of_directions.numpy(),
-                of_optical_paths=of_paths.numpy(),
+                of_origins=grad_origins.numpy(),
+                of_directions=grad_directions.numpy(),
+                of_optical_paths=grad_paths.numpy(),
                 wavelength_nm=wavelength_nm,
                 start=start,
             )

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .._core import Glass, InputError, Lens, Surface, _form_terms
+from ..dispersion import LINE_D_NM
 
 FORM_TERMS = _form_terms()
 """Kinds of terms of the sag, as keywords of Surface."""
@@ -115,7 +116,7 @@ class Variable:
         if self.quantity == "conic":
             return surface.conic
         if self.quantity == "index":
-            return surface.material.index(587.5618)
+            return surface.material.index(LINE_D_NM)
         if self.quantity in ("tilt", "decentre"):
             return (surface.tilt_deg if self.quantity == "tilt" else surface.decentre_mm)[self.power]
         return surface.aspheric_coefficients.get(self.power, 0.0)
@@ -172,8 +173,8 @@ def check_surface_exists(lens: Lens, surface: int) -> None:
 
 
 def checked(lens: Lens, variables: Sequence[Variable]) -> list[Variable]:
-    """Returns the variables as a list. Raises InputError if there are none, or for duplicates and unknown
-    quantities."""
+    """Returns the variables as a list. Raises InputError if there are none, or for duplicates, unknown quantities and
+    surfaces that the lens does not have."""
     if not variables:
         raise InputError("variables must have at least one Variable")
     if len({v.as_tuple() for v in variables}) < len(variables):
@@ -181,6 +182,8 @@ def checked(lens: Lens, variables: Sequence[Variable]) -> list[Variable]:
     for variable in variables:
         if variable.quantity not in QUANTITIES:
             raise InputError(f'unknown quantity "{variable.quantity}"; expected one of {", ".join(QUANTITIES)}')
+        if variable.quantity != "film_distance":
+            check_surface_exists(lens, variable.surface)
     return list(variables)
 
 

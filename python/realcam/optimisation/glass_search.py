@@ -9,9 +9,10 @@ from functools import lru_cache
 
 from .._core import Glass, InputError, Lens, LensFileError, RealcamError, glass_names
 from ..derivatives.variable import Variable, check_surface_exists
+from ..dispersion import LINE_C_NM, LINE_D_NM, LINE_F_NM
 from .optimiser import Targets, optimised
 
-_G, _F, _D, _C = 435.8343, 486.1327, 587.5618, 656.2725  # Fraunhofer lines, nm
+_LINE_G_NM = 435.8343
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class GlassMatch:
 
 def _numbers(glass: Glass) -> tuple[float, float, float]:
     """n_d, Abbe number and partial dispersion of a glass; inf and 0 if it has no dispersion."""
-    g, f, d, c = (glass.index(nm) for nm in (_G, _F, _D, _C))
+    g, f, d, c = (glass.index(nm) for nm in (_LINE_G_NM, LINE_F_NM, LINE_D_NM, LINE_C_NM))
     if f <= c:
         return d, math.inf, 0.0
     return d, (d - 1) / (f - c), (g - f) / (f - c)

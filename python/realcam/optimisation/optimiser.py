@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .._core import InputError, Lens, LensFileError
 from ..derivatives.field_light import field_light
 from ..derivatives.focus import film_distance_by
-from ..derivatives.variable import Variable, check_surface_exists, checked
+from ..derivatives.variable import Variable, checked
 from .operands import Operand
 
 Progress = Callable[[int, float], bool | None]
@@ -361,7 +361,6 @@ def _check(lens: Lens, variables: list[Variable], targets: Targets) -> None:
             raise InputError(
                 f'an optimisation cannot change "{variable.quantity}"; expected one of {", ".join(supported)}'
             )
-        check_surface_exists(lens, variable.surface)
         if variable.quantity == "thickness" and variable.surface == len(lens.surfaces) - 1:
             raise InputError("the last surface has no thickness; the film distance follows it")
         surface = lens.surfaces[variable.surface]

@@ -55,6 +55,15 @@ def usual_circle_mm(film_mm: tuple[float, float]) -> float:
     return math.hypot(*film_mm) / 1500
 
 
+def circle_for(lens: Lens, circle_mm: float | None) -> float:
+    """Returns the specified circle of confusion, or the usual one of the lens's film. Raises InputError unless it is
+    positive and finite."""
+    circle = usual_circle_mm(lens.film_mm) if circle_mm is None else circle_mm
+    if not 0 < circle < math.inf:
+        raise InputError("the circle of confusion must be a positive length")
+    return circle
+
+
 def blur_diameter_mm(lens: Lens, object_distance_m: float | None = None) -> float:
     """Returns the blur diameter of an axial point in mm: that of the uniform disc with the same second moment, sqrt(8)
     times the RMS radius.
@@ -73,9 +82,7 @@ def depth_of_field(lens: Lens, circle_of_confusion_mm: float | None = None) -> D
     circle_of_confusion_mm: the largest blur that counts as sharp; None: the film's diagonal / 1500. The blur of real
     rays is blur_diameter_mm(). Raises InputError if the lens has no focal length, or if no light passes it.
     """
-    circle = usual_circle_mm(lens.film_mm) if circle_of_confusion_mm is None else circle_of_confusion_mm
-    if not (circle > 0 and math.isfinite(circle)):
-        raise InputError("the circle of confusion must be a positive length")
+    circle = circle_for(lens, circle_of_confusion_mm)
     real, formula = sharp_ranges(lens, circle)
     thin = ThinLens.of(lens)
     return DepthOfField(

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._core import Camera, Film, InputError, RayPairTable
 from ..archive import packed, read_archive, write_archive
+from ..dispersion import LINE_D_NM
 from ..files import check_target
 from .passing_fit import Booleans, fitted_discs, inside, stop_near_axis
 from .polynomial_fit import Array, RayPolynomials, evaluated, fitted, wavelength_terms, wavelength_variable
@@ -239,7 +240,7 @@ class RayPairLens:
     def _checked(self, wavelength_nm: float | None) -> float:
         shortest, longest = self.wavelengths_nm
         if wavelength_nm is None:
-            return float(np.clip(587.5618, shortest, longest))
+            return float(np.clip(LINE_D_NM, shortest, longest))
         if not shortest - 0.05 <= wavelength_nm <= longest + 0.05:
             raise InputError(
                 f"the wavelength {wavelength_nm:.6g} nm lies outside those that were measured, {shortest:.6g} to "

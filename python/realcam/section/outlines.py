@@ -43,8 +43,6 @@ class Blocker(ShortText):
     surface: int
     is_stop: bool
     z_mm: float
-    opening_mm: float  #: semi-diameter of the opening
-    outer_mm: float  #: distance from the axis at which the lines around the opening end
     obstruction_mm: float  #: semi-diameter of the central obstruction; 0: no obstruction
     lines: tuple[Points, ...]  #: (2, 2) each: two around the opening, if any, then the obstruction, if any
 
@@ -123,7 +121,7 @@ def blockers_of(cut: Cut) -> tuple[Blocker, ...]:
         if blocked > 0:
             ends.append((-blocked, blocked))
         lines = tuple(cut.placed(i, (0.0, 0.0), pair) for pair in ends)
-        blockers.append(Blocker(i, is_stop, z, opening, outer, blocked, lines))
+        blockers.append(Blocker(i, is_stop, z, blocked, lines))
     return tuple(blockers)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -28,7 +27,6 @@ class CrossSection(ShortText):
     marks: tuple[Mark, ...]
     focus_group: FocusGroup | None
     film_z_mm: float
-    film_semi_diagonal_mm: float
     film: Points  #: the film's outline
     plane: str
     fields: tuple[Field, ...]
@@ -116,7 +114,6 @@ def cross_section(
         marks_of(lens) if cut.is_in_place else (),
         focus_group_of(lens),
         lens.film_position_mm,
-        0.5 * math.hypot(*lens.film_mm),
         cut.film,
         plane,
         field_points,

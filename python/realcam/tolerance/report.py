@@ -28,12 +28,12 @@ thead th { border-bottom: 1px solid var(--faint); }
 .wide { overflow-x: auto; }
 @media print { body { font-size: 9pt; max-width: none; margin: 0; } svg, tr { break-inside: avoid; } }
 """
-SHOWN = 12  # tolerances in the plot of the worst offenders
-LOSS = 0.02  # of mean MTF, for the inverse sensitivities
+SHOWN_OFFENDERS = 12  # tolerances in the plot of the worst offenders
+DEFAULT_LOSS = 0.02  # of mean MTF, for the inverse sensitivities
 
 
 def save_tolerance_report(
-    study: ToleranceStudy, path: str | os.PathLike[str], *, theme: str | None = None, loss: float = LOSS
+    study: ToleranceStudy, path: str | os.PathLike[str], *, theme: str | None = None, loss: float = DEFAULT_LOSS
 ) -> None:
     """Writes the report. theme: "light" or "dark"; None follows the reader's browser. loss: loss of mean MTF for which
     the report lists the inverse sensitivities. Raises ImageFileError, and InputError for an unknown theme."""
@@ -50,7 +50,7 @@ def page_of(study: ToleranceStudy, theme: str | None, loss: float) -> str:
     if loss < study.nominal_measure("mtf"):
         allowed = {(t.kind, t.first, t.last): t.limit for t in study.inverse_sensitivities(loss)}
     with style.themed("light", 7.0):
-        figure = inline_svg(study_figure(study, offenders[:SHOWN]), "tolerance")
+        figure = inline_svg(study_figure(study, offenders[:SHOWN_OFFENDERS]), "tolerance")
     title = html.escape(f"{study.lens.title or study.lens.name or 'lens'}: tolerances")
     rows = [
         (
@@ -61,7 +61,7 @@ def page_of(study: ToleranceStudy, theme: str | None, loss: float) -> str:
             f"{o.lowest_mtf[1]:+.4f}",
             f"{1000 * max(o.spot_mm):+.2f}",
             f"{o.focal_length_mm[1]:+.4f}",
-            _limit(allowed.get((o.tolerance.kind, o.tolerance.first, o.tolerance.last))),
+            _limit_text(allowed.get((o.tolerance.kind, o.tolerance.first, o.tolerance.last))),
         )
         for o in offenders
     ]
@@ -69,16 +69,18 @@ def page_of(study: ToleranceStudy, theme: str | None, loss: float) -> str:
         rows, ["tolerance", "mean MTF −", "+", "worst field −", "+", "spot / µm", "focal length / mm", "allowed"]
     )
     quantiles = html_table(_quantiles(study), ["", "nominal", *(f"{percent_text(share)} below" for share in SHARES)])
-    whole = "" if study.is_whole else " The study was stopped before all copies were evaluated."
+    copies = f"{len(study)} {'copy' if len(study) == 1 else 'copies'}"
+    stopped_note = "" if study.is_whole else " The study was stopped before all copies were evaluated."
     return f"""{page_top(title, STYLE, theme)}
-<p>{len(study)} copies, seed {study.seed}; {html.escape(_compensators(study))}.{whole}</p>
+<p>{copies}, seed {study.seed}; {html.escape(_compensators(study))}.{stopped_note}</p>
 {figure}
 <h2>Copies</h2>
 <div class="wide">{quantiles}</div>
 <h2>Each tolerance alone</h2>
 <div class="wide">{sensitivities}</div>
 <p class="note">Changes at the lower and the upper limit, with the compensators set; for a tolerance with a direction,
-in the one with the larger loss. MTF is the geometric MTF at {study.frequencies_per_mm[study.main]:.4g} periods per mm
+in the one with the larger loss. The change of the spot is the larger one, that of the focal length the one at the
+upper limit. MTF is the geometric MTF at {study.frequencies_per_mm[study.main]:.4g} periods per mm
 times the diffraction limit. "Allowed": the limit at which a tolerance alone costs {loss:g} of the mean MTF.</p>
 </html>
 """
@@ -104,6 +106,6 @@ def _compensators(study: ToleranceStudy) -> str:
     return ", ".join(parts) or "no compensators"
 
 
-def _limit(value: float | None) -> str:
+def _limit_text(value: float | None) -> str:
     """Text of an allowed limit; "any" for inf."""
     return "" if value is None else "any" if math.isinf(value) else f"{value:.3g}"

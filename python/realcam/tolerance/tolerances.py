@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import InputError, Lens
+from ..dispersion import LINE_C_NM, LINE_F_NM
 from .elements import check_element, check_surface, elements_of, has_glass_behind
 from .grades import GRADES
 
@@ -262,7 +263,7 @@ def _why_not(lens: Lens, kind: str, surface: int) -> str:
     if kind in ("index", "abbe_percent"):
         if not has_glass_behind(lens, surface):
             return f"there is no glass behind surface {surface + 1}"
-        if kind == "abbe_percent" and not s.material.index(486.1327) > s.material.index(656.2725):
+        if kind == "abbe_percent" and not s.material.index(LINE_F_NM) > s.material.index(LINE_C_NM):
             return f"the dispersion of the glass behind surface {surface + 1} is unknown"
     if kind == "wedge_arcmin" and (surface == 0 or not has_glass_behind(lens, surface - 1)):
         return f"there is no glass in front of surface {surface + 1}, and no wedge; use surface_tilt_arcmin"

@@ -1,4 +1,4 @@
-"""Meshes of the document: a surface with the materials of its faces."""
+"""glTF meshes made of USD surfaces and the materials of their faces."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .shading_network import DEFAULT_COLOUR
 from .stage import OpenStage
 from .surface import Surface, triangulated, vertex_arrays
 
-# Pairs of face indices and their material; None: all faces that no other pair lists.
+# Pairs of indices of the prim's faces and their material; None: all faces that no other pair lists.
 FaceMaterials = list[tuple[np.ndarray | None, TranslatedMaterial]]
 
 
@@ -21,12 +21,13 @@ def add_mesh(opened: OpenStage, glb: Glb, prim: Usd.Prim, surface: Surface, mate
     """Adds a surface as a mesh of the document, with one primitive for each material that is used. Returns its
     index."""
     primitives = []
-    is_left = np.ones(len(surface.counts), bool)
+    is_unassigned = np.ones(len(surface.counts), bool)
     for faces, material in materials:
-        keeps = is_left if faces is None else is_left & np.isin(surface.faces, faces)
-        is_left = is_left & ~keeps
-        if keeps.any():
-            primitives.append(_primitive(opened, glb, prim, surface if keeps.all() else surface.kept(keeps), material))
+        has_it = is_unassigned if faces is None else is_unassigned & np.isin(surface.faces, faces)
+        is_unassigned = is_unassigned & ~has_it
+        if has_it.any():
+            part = surface if has_it.all() else surface.kept(has_it)
+            primitives.append(_primitive(opened, glb, prim, part, material))
     return glb.add("meshes", {"name": str(prim.GetPath()), "primitives": primitives})
 
 

@@ -139,6 +139,18 @@ def test_an_unchanged_camera_keeps_its_numbers_to_the_last_bit(tmp_path: Path, n
         assert np.array_equal(transform, again.extrinsics[key])
 
 
+def test_an_attribute_of_another_model_is_not_written_again(tmp_path: Path) -> None:
+    """The fisheye model has k1 to k4. It took the empty value of k5 for one of its numbers."""
+    model = "omni:lensdistortion:opencvFisheye"
+    numbers = "".join(f"float {model}:{key} = 500\n" for key in ("fx", "fy", "cx", "cy"))
+    (tmp_path / "a.usda").write_text(
+        f'#usda 1.0\ndef Camera "a"\n{{\ntoken omni:lensdistortion:model = "opencvFisheye"\n'
+        f'{numbers}int2 {model}:imageSize = (640, 480)\nstring {model}:k5 = ""\n}}\n'
+    )
+    rc.Calibration.load(tmp_path / "a.usda").save(tmp_path / "b.usda")
+    assert "k5" not in (tmp_path / "b.usda").read_text()
+
+
 def test_a_changed_camera_is_not_written_with_the_numbers_of_its_file(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text(FILES["camera_info.yaml"])
     half = rc.Calibration.load(tmp_path / "a.yaml").resized((320, 240))

@@ -156,6 +156,25 @@ TELECENTRIC = rc.Lens(
         (lambda: PLATE.seidel(3.0), "afocal"),
         (lambda: TELECENTRIC.spot(3.0), "telecentric on the object's side"),
         (lambda: TELECENTRIC.seidel(3.0), "telecentric on the object's side"),
+        (
+            lambda: rc.analysis.mtf(LENS, object_distance_m=-1),
+            "object_distance_m must be a positive length, or inf; it is -1",
+        ),
+        (lambda: rc.analysis.mtf(LENS, frequencies_per_mm=-1), "^frequencies_per_mm must not be negative"),
+        (lambda: rc.analysis.mtf_over_frequency(LENS, highest_per_mm=-1), "^highest_per_mm must not be negative"),
+        (lambda: rc.analysis.mtf_over_frequency(LENS, highest_per_mm=math.inf), "^highest_per_mm must be finite"),
+        (lambda: rc.analysis.mtf_over_frequency(LENS, samples=0), "^samples must be 1 or more; it is 0"),
+        (lambda: rc.analysis.mtf_through_focus(LENS, -1.0), "^frequency_per_mm must not be negative"),
+        (lambda: rc.analysis.field_map(LENS, "mtf-x", frequency_per_mm=-1), "^frequency_per_mm must not be negative"),
+        (lambda: rc.analysis.ray_fan(LENS, samples=-1), "^samples must be 1 or more"),
+        (lambda: rc.analysis.longitudinal_aberration(LENS, samples=0), "^samples must be 1 or more"),
+        (lambda: rc.analysis.depth_over_focus(LENS, samples=-1), "^samples must be 1 or more"),
+        (
+            lambda: rc.analysis.depth_over_focus(LENS, circle_of_confusion_mm=0),
+            "circle of confusion must be a positive",
+        ),
+        (lambda: rc.analysis.distortion_grid(LENS, lines=-1), "^lines must be 1 or more"),
+        (lambda: rc.analysis.bokeh(LENS, size=0), "^size must be 1 or more"),
     ],
 )
 def test_mistakes_get_one_clear_error(call: object, required: str) -> None:

@@ -45,5 +45,8 @@ def test_wrong_values_are_refused() -> None:
     rays = torch.zeros((1, 3))
     with pytest.raises(rc.InputError, match="values must be 1 numbers"):
         trace_with_torch(lens, rays, rays, [rc.Variable.radius(0)], torch.zeros(2))
+    for surface in (-1, 99):
+        with pytest.raises(rc.InputError, match=f"there is no surface {surface}; the lens has"):
+            trace_with_torch(lens, rays, rays, [rc.Variable.radius(surface)], torch.zeros(1))
     with pytest.raises(rc.InputError, match='the quantity "film_distance" cannot be set'):
         trace_with_torch(lens, rays, rays, [rc.Variable.film_distance()], torch.zeros(1))

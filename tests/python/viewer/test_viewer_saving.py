@@ -119,7 +119,7 @@ def test_a_picture_is_saved_with_the_noise_that_is_asked_for(bench: BenchPage, s
     """It has a button of its own, here clicked as soon as the page is open, when the picture has one sample."""
     shot = rc.Shot.load(server.shot)
     bench.choose("refine to", "2 grey levels")
-    bench.until_text("save-refined", lambda text: text == "Save to 2 grey levels")
+    bench.until_text("save-refined", lambda text: text == "Save when the noise is 2 grey levels")
     ask_to_save(bench, "picture", f"{folder.name}/refined.png", "save-refined")
     until(lambda: bench.text("said"), lambda text: text == "Wrote refined.png", "saved", 240)
     bench.until_text("time-left", lambda text: text == "Time left: none")
@@ -153,7 +153,7 @@ def test_saving_a_refined_picture_is_given_up_or_cut_short(bench: BenchPage, fol
     ask_to_save(bench, "picture", f"{folder.name}/soon.png", "save-refined")
     bench.until_text("save-progress", lambda text: "sample" in text and "Time left" in text)
     answer(bench, "Do not save")
-    bench.until_text("said", lambda text: text == "not saved")
+    bench.until_text("said", lambda text: text == "The picture was not saved.")
     assert list(folder.iterdir()) == []
     ask_to_save(bench, "picture", f"{folder.name}/soon.png", "save-refined")
     bench.until_text("save-progress", lambda text: "sample" in text)

@@ -129,6 +129,7 @@ def test_the_size_of_a_calibration_may_be_scaled(tmp_path: Path) -> None:
         ('depth = "z"', 'recipe.toml:5: depth: "z" is unknown; expected axis, ray'),
         ("lenses = []", "recipe.toml:5: lenses must name at least one"),
         ('lenses = ["no-such-lens"]', "recipe.toml:5: .*no-such-lens"),
+        ("iso = [100, 1e300]", "recipe.toml:5: iso must be 10000000 or less"),
         ("readout_time_s = 1", "recipe.toml:5: next_after_s and readout_time_s must be 0.5 s or less"),
         ("square_m = 1" + 400 * "0" + ".0", "recipe.toml:5: "),
         ("stereo_m = -1", "recipe.toml:5: film_width_mm and stereo_m must be 0 or more"),

@@ -7,7 +7,6 @@ pinhole camera with the nominal focal length.
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -157,13 +156,9 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
     return {path: f'<lensdatabase version="1">\n{"".join(parts)}</lensdatabase>\n'.encode()}
 
 
-def _is_database(root: ET.Element) -> bool:
-    return root.tag == "lensdatabase"
-
-
 FORMAT: Format = Format(
     "lensfun",
-    lambda d: d.syntax == "xml" and _is_database(d.xml),
+    lambda d: d.syntax == "xml" and d.xml.tag == "lensdatabase",
     cameras,
     Writer(("*lensfun*.xml", "*lenses*.xml", "*.xml"), _values, _content),
 )

@@ -28,11 +28,6 @@ from .usd_text import camera_prims
 
 PREFIX = "omni:lensdistortion:"
 PINHOLE_KEYS = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4")
-KEYS = {
-    *("fx", "fy", "cx", "cy", "imageSize", *PINHOLE_KEYS),
-    *("k0", "maxFov", "opticalCenter", "nominalWidth", "nominalHeight"),
-    *("rayEnterDirectionTexture", "rayExitPositionTexture"),
-}
 Read = Callable[[Entries], tuple[CameraModel, tuple[int, int]]]
 
 
@@ -60,6 +55,8 @@ def _ftheta(entries: Entries) -> tuple[CameraModel, tuple[int, int]]:
 
 def _lut(entries: Entries) -> tuple[CameraModel, tuple[int, int]]:
     size = entries.size("nominalWidth", "nominalHeight")
+    if "opticalCenter" in entries:  # is not used, but written again
+        entries.numbers("opticalCenter", 2)
     paths = (entries.text("rayEnterDirectionTexture"), entries.text("rayExitPositionTexture"))
     return lut_model(entries.document, *paths, size), size
 
@@ -70,7 +67,15 @@ MODELS: dict[str, Read] = {
     "ftheta": _ftheta,
     "lut": _lut,
 }
-# Models whose equations are published without the focal length that turns their plane into pixels.
+_MATRIX_KEYS, _NOMINAL_KEYS = ("fx", "fy", "cx", "cy"), ("nominalWidth", "nominalHeight", "opticalCenter")
+# Attributes that are written again; all have been read without errors.
+KEYS = {
+    "opencvPinhole": {*_MATRIX_KEYS, *PINHOLE_KEYS, "imageSize"},
+    "opencvFisheye": {*_MATRIX_KEYS, *(f"k{i}" for i in range(1, 5)), "imageSize"},
+    "ftheta": {*_NOMINAL_KEYS, *(f"k{i}" for i in range(5)), "maxFov"},
+    "lut": {*_NOMINAL_KEYS, "rayEnterDirectionTexture", "rayExitPositionTexture"},
+}
+# Models whose documentation does not state the focal length that turns their plane into pixels.
 WITHOUT_EQUATION = ("kannalaBrandtK3", "radTanThinPrism")
 
 
@@ -81,10 +86,10 @@ def _camera(document: Document, name: str, values: dict[str, object]) -> StatedC
         prim.fail(f"{PREFIX}model", f"one of {', '.join(MODELS)}, as no published equation states its focal length")
     prim.choice(f"{PREFIX}model", MODELS)
     prefix = f"{PREFIX}{model}:"
-    own = {key.removeprefix(prefix): value for key, value in values.items() if key.startswith(prefix)}
-    camera_model, size = MODELS[model](Entries(document, own, f"{name}.{prefix}"))
-    own = {key: value for key, value in own.items() if key in KEYS}
-    return StatedCamera(camera_model, size, model, name=name, format="omniverse", file_values={"model": model, **own})
+    values_of_model = {key.removeprefix(prefix): value for key, value in values.items() if key.startswith(prefix)}
+    camera_model, size = MODELS[model](Entries(document, values_of_model, f"{name}.{prefix}"))
+    known = {key: value for key, value in values_of_model.items() if key in KEYS[model]}
+    return StatedCamera(camera_model, size, model, name=name, format="omniverse", file_values={"model": model, **known})
 
 
 def _prims(document: Document) -> dict[str, dict[str, object]]:
@@ -133,9 +138,9 @@ def _ftheta_values(terms: Terms) -> dict[str, Any]:
 
 def _values(camera: StatedCamera) -> Mapping[str, Any]:
     """Returns the attributes of the model; a model without attributes of its own becomes textures."""
-    for state in (_opencv_values, _ftheta_values):
+    for values_of in (_opencv_values, _ftheta_values):
         try:
-            return state(terms_of(camera))
+            return values_of(terms_of(camera))
         except Inexpressible:
             continue
     width, height = map(float, camera.size)

@@ -11,6 +11,7 @@ from nicegui.events import GenericEventArguments
 from nicegui.slot import Slot
 
 from ..._core import effects, glass_names
+from ...analysis import style
 from ..effect_switches import EFFECTS
 from .lens_cards import lens_cards
 
@@ -108,6 +109,7 @@ class CostPanel(Element, component="static/cost_panel.js"):
         super().__init__()
         self._props["path"] = path
         self._props["effects"] = _switchable()
+        self._props["colours"] = style.PALETTE
 
 
 def _switchable() -> list[dict[str, Any]]:

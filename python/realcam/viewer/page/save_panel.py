@@ -55,7 +55,7 @@ class SavePanel:
 
     def update(self) -> None:
         """Shows the bench's noise goal and the remaining time. On the server's loop."""
-        self._refine.set_text(f"Save to {grey_levels(self._bench.noise_codes)}")
+        self._refine.set_text(f"Save when the noise is {grey_levels(self._bench.noise_codes)}")
         self._time_left.set_text(f"Time left: {self._bench.time_left}")
 
     def _propose(self) -> None:
@@ -177,7 +177,7 @@ class SavePanel:
                 dialog.close()
                 dialog.delete()
         if not bench.is_refined and not (answer.done() and not answer.cancelled() and answer.result()):
-            raise InputError("not saved")
+            raise InputError("The picture was not saved.")
 
 
 async def _answer(statement: str) -> bool:

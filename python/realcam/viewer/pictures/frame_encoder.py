@@ -23,10 +23,10 @@ class FrameEncoder:
         self.quality = 85  #: JPEG quality, 0 to 100
 
     def submit(self, codes: NDArray[np.uint8], frame_of: Callable[..., Frame]) -> None:
-        """Encodes a frame after waiting for the previous one. frame_of: returns the Frame for its jpeg and
-        jpeg_quality.
+        """Encodes a frame after waiting for the previous one.
 
-        Raises RuntimeError if the program is ending.
+        codes: (H, W, 3), RGB. frame_of: called as frame_of(jpeg=..., jpeg_quality=...). Raises RuntimeError if the
+        program is ending, and errors of the previous frame's encoding.
         """
         previous, self._encoding = self._encoding, None
         if previous:

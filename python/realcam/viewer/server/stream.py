@@ -64,13 +64,11 @@ class PictureStream:
         for task in self._serving:  # a dead connection would continue to take frames
             task.cancel()
         self._sent = None
-        tasks = [
-            asyncio.create_task(part)
-            for part in (self._receive(socket), self._send(socket), self._work(), self._begin())
-        ]
+        endless = [asyncio.create_task(part) for part in (self._receive(socket), self._send(socket), self._work())]
+        tasks = [*endless, asyncio.create_task(self._begin())]
         self._serving = tasks
         try:
-            done, _ = await asyncio.wait(tasks[:3], return_when=asyncio.FIRST_COMPLETED)
+            done, _ = await asyncio.wait(endless, return_when=asyncio.FIRST_COMPLETED)
             for task in done:
                 error = None if task.cancelled() else task.exception()
                 if isinstance(error, BadMessage):
@@ -83,8 +81,11 @@ class PictureStream:
                 task.cancel()
 
     async def _begin(self) -> None:
-        """Lets the bench send its current state."""
-        await self._loop.run_in_executor(self._executor, self._bench.show)
+        """Lets the bench send its current state. Logs errors, because nobody awaits this task."""
+        try:
+            await self._loop.run_in_executor(self._executor, self._bench.show)
+        except Exception:
+            _log.exception("the state of the bench could not be sent")
 
     async def _receive(self, socket: WebSocket) -> None:
         while True:

@@ -2,27 +2,25 @@
 
 import { streamAt } from "/realcam/stream.js";
 
-// Colours that are visible on a light page and a dark one.
-const COLOURS = ["#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a", "#5b8f9e", "#e0709a", "#a0642d", "#8f8f8f", "#3fae9c", "#c05ac8"];
 /// Text of a number with two digits at least, without an exponent: 0.012, 1.5, 108.
 const short = (x) => String(x < 100 ? Number(x.toPrecision(2)) : Math.round(x));
 const W = 300, H = 120, LEFT = 34, BOTTOM = 20; // size of the diagram, and its margins for labels
 
 export default {
-  props: { path: String, effects: Array },
+  props: { path: String, effects: Array, colours: Array },
   template: `
 <section class="rc-costs" aria-label="Effects and cost">
   <p class="rc-note">An effect on "auto" is simulated if it is visible in this picture.</p>
   <ul class="rc-effects">
     <li v-for="e in effects" :key="e.name" :title="e.help">
-      <label :for="'rc-effect-' + e.name">{{ label_of(e.name) }}</label>
+      <label :for="'rc-effect-' + e.name">{{ labelOf(e.name) }}</label>
       <select :id="'rc-effect-' + e.name" :data-effect="e.name" :value="states[e.name]" @change="choose(e.name, $event.target.value)">
         <option value="auto">auto{{ planned(rows[e.name]) }}</option>
         <option value="on">on</option><option value="off">off</option></select>
-      <span class="rc-size" :title="rows[e.name]?.reason">{{ size(e.name) }}</span>
+      <span class="rc-size" :title="rows[e.name]?.reason">{{ sizeSentence(e.name) }}</span>
     </li>
-    <li v-for="row in others" :key="row.effect" :title="row.reason"><b>{{ label_of(row.effect) }}</b><span>by the camera model</span>
-      <span class="rc-size">{{ size(row.effect) }}</span></li>
+    <li v-for="row in others" :key="row.effect" :title="row.reason"><b>{{ labelOf(row.effect) }}</b><span>by the camera model</span>
+      <span class="rc-size">{{ sizeSentence(row.effect) }}</span></li>
   </ul>
   <p v-if="note" class="rc-note">{{ note }}</p>
   <details><summary>Reasons of the planner</summary><ul class="rc-reasons"><li v-for="row in all" :key="row.effect"><b>{{ row.effect }}</b>: {{ row.reason }}</li></ul></details>
@@ -116,11 +114,11 @@ export default {
       const [t0, t1, n0, n1] = this.limits, fraction = (x, a, b) => Math.log(x / a) / Math.log(b / a);
       return [LEFT + (W - LEFT) * fraction(t, t0, t1), (H - BOTTOM) * (1 - fraction(n, n0, n1))];
     },
-    colour: (k) => COLOURS[k % COLOURS.length],
+    colour(k) { return this.colours[k % this.colours.length]; },
     planned: (row) => (!row ? "" : row.is_kept ? " (on)" : " (off)"),
-    label_of: (name) => name[0].toUpperCase() + name.slice(1).replaceAll("_", " "),
+    labelOf: (name) => name[0].toUpperCase() + name.slice(1).replaceAll("_", " "),
     /// Sentence about the size of an effect in this picture.
-    size(name) {
+    sizeSentence(name) {
       const row = this.rows[name], digits = (x) => (x === Infinity ? "∞" : String(Number(x.toPrecision(2))));
       if (!row) return "";
       const unit = row.unit === "px" ? "pixel" : "grey level", size = digits(row.size);

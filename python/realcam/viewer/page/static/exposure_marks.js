@@ -1,6 +1,6 @@
 // Camera overlays computed from 8-bit codes: histogram, clipping, focus peaking.
 
-const CLIPPED = 254; // JPEG changes codes by one or two
+const CLIPPED = 254; // smallest code that counts as clipped: JPEG changes 255 by one
 const PEAKING = 44; // smallest response of the Laplacian below at a sharp edge, in codes
 const SIGNIFICANCE = 4; // smallest response at an edge, in standard deviations of its noise
 const NOISE_GAIN = Math.sqrt(20); // noise gain of the Laplacian below: root of the sum of its squared weights
@@ -13,12 +13,14 @@ export function histogramOf(image) {
   return bins;
 }
 
+/// True if a channel of the pixel at an index of the data is clipped.
+const isClipped = (data, i) => data[i] >= CLIPPED || data[i + 1] >= CLIPPED || data[i + 2] >= CLIPPED;
+
 /// Fraction of the pixels with a clipped channel.
 export function clippedShare(image) {
   const data = image.data;
   let count = 0;
-  for (let i = 0; i < data.length; i += 4)
-    if (data[i] >= CLIPPED || data[i + 1] >= CLIPPED || data[i + 2] >= CLIPPED) count += 1;
+  for (let i = 0; i < data.length; i += 4) if (isClipped(data, i)) count += 1;
   return count / (data.length / 4);
 }
 
@@ -31,19 +33,18 @@ export function marksOf(image, { clipping, peaking, noise = null }) {
   for (let y = 0; y < height; ++y)
     for (let x = 0; x < width; ++x) {
       const k = y * width + x, i = 4 * k;
-      const isClipped = data[i] >= CLIPPED || data[i + 1] >= CLIPPED || data[i + 2] >= CLIPPED;
-      if (clipping && isClipped && (x + y) % 8 < 4) marks.data.set([255, 0, 60, 255], i);
+      if (clipping && isClipped(data, i) && (x + y) % 8 < 4) marks.data.set([255, 0, 60, 255], i);
       else if (isEdge && isEdge[k]) marks.data.set([255, 230, 0, 255], i);
     }
   return marks;
 }
 
-/// Pixels whose Laplacian exceeds the noise, as do those of at least two neighbours: an edge is a line, noise is not.
+/// Returns 1 for pixels whose Laplacian of green exceeds the noise, and that have at least two such neighbours: an edge
+/// is a line, noise is not.
 function sharpEdges({ width, height, data }, noise) {
-  // An isolated brighter or darker pixel is an outlier of the samples, not an edge.
   const green = new Uint8ClampedArray(width * height);
   for (let k = 0; k < green.length; ++k) green[k] = data[4 * k + 1];
-  const smoothed = green.slice();
+  const smoothed = green.slice(); // without isolated brighter or darker pixels, which are outliers of the samples
   for (let y = 1; y + 1 < height; ++y)
     for (let x = 1; x + 1 < width; ++x) {
       const k = y * width + x;
