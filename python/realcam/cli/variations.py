@@ -48,7 +48,7 @@ def _at_f_number(camera: Camera, value: str) -> Camera:
     except ValueError:
         f_number = math.nan
     if not (f_number > 0 and math.isfinite(f_number)):
-        raise InputError(f'"{value:.40}" is no f-number; expected a number such as 2.8')
+        raise InputError(f'"{value:.40}" is not an f-number; expected a number such as 2.8')
     return camera.replace(lens=camera.lens.stopped_down(f_number))
 
 
