@@ -27,7 +27,7 @@ def row_of(key: _core._ShotKey) -> str:
 
 
 def _with_links(text: str) -> str:
-    return re.sub(r"docs/((\w+)\.md)", r"[\2](\1)", text)
+    return re.sub(r"docs/(([\w-]+)\.md)", r"[\2](\1)", text)
 
 
 def page(text: str) -> str:

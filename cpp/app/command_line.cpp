@@ -55,7 +55,7 @@ std::string joined_with_commas(const std::vector<std::string>& names) {
 std::string rephrased(const CLI::ParseError& error) {
     const std::string words = error.what();
     constexpr std::array<std::pair<const char*, const char*>, 3> kRephrasings{{
-        {": At Most 1 required but received ", " is given more than once"},
+        {": At Most 1 required but received ", " is specified more than once"},
         {": 1 required ", " requires a value"},
         {" was given a disallowed flag override", " takes no value"},
     }};

@@ -12,7 +12,7 @@ namespace realcam::app {
 void add_lens_path_option(CLI::App& command, std::vector<std::string>& folders) {
     command
         .add_option("--lens-path", folders,
-                    "Folder whose lens files can be given by their names; may be repeated [REALCAM_LENS_PATH]")
+                    "Folder in which lenses are found by name; may be repeated [REALCAM_LENS_PATH]")
         ->type_name("DIR")
         ->allow_extra_args(false);
 }
@@ -21,7 +21,7 @@ void set_lens_path(const std::vector<std::string>& folders) {
     if (folders.empty()) return;
     std::string path;
     for (const std::string& folder : folders) {
-        if (!std::filesystem::is_directory(folder)) throw InputError("--lens-path: " + folder + " is no folder");
+        if (!std::filesystem::is_directory(folder)) throw InputError("--lens-path: " + folder + " is not a folder");
         path += folder + ':';
     }
     if (const char* inherited = std::getenv("REALCAM_LENS_PATH")) path += inherited;
@@ -30,24 +30,24 @@ void set_lens_path(const std::vector<std::string>& folders) {
 
 void add_lens_options(CLI::App& command, LensFileOptions& values) {
     command
-        .add_option("--glass", values.glasses,
-                    "Glass that the lens file names and no catalogue has: its n_d and V_d, or another glass, as in "
-                    "NAME=schott:F4; may be repeated")
+        .add_option(
+            "--glass", values.glasses,
+            "Definition of a glass in the lens file that no catalogue, or more than one, contains: NAME=n_d,V_d "
+            "or NAME=schott:F4; may be repeated")
         ->type_name("NAME=N,V")
         ->allow_extra_args(false);
     command
         .add_option("--glass-catalogue", values.catalogues,
-                    "Glass catalogue (.agf) in which the glasses of the lens file are looked up; may be repeated")
+                    "Glass catalogue (.agf) that takes precedence over the bundled ones; may be repeated")
         ->type_name("FILE")
         ->allow_extra_args(false);
     add_lens_path_option(command, values.folders);
-    command.add_flag("--force", values.force,
-                     "Read a lens file with unsupported features: leave them out, with warnings");
+    command.add_flag("--force", values.force, "Ignore unsupported features of the lens file, with a warning");
     command
         .add_option(
             "--pbrt-thickness", values.pbrt_thickness,
-            "Whether a thickness in a .dat file is that after or before the surface of its row [detected from the "
-            "first row]")
+            "Whether a thickness in a .dat file lies after or before the surface of its row [detected from the first "
+            "row]")
         ->type_name("WHERE");
 }
 
@@ -68,7 +68,7 @@ io::LensReadOptions lens_options_of(const LensFileOptions& values) {
             }
         }();
         if (!options.glasses.emplace(name, glass).second)
-            throw InputError("--glass: the glass \"" + name + "\" is given twice");
+            throw InputError("--glass: the glass \"" + name + "\" is specified twice");
     }
     set_lens_path(values.folders);
     for (const std::string& file : values.catalogues) io::read_glass_catalogue(file, options.catalogue);

@@ -53,7 +53,7 @@ void check_outputs(const std::vector<std::string>& outputs) {
     for (auto it = outputs.begin(); it != outputs.end(); ++it) {
         if (!is_video(*it)) image_io::check_image_path(*it);
         if (std::any_of(outputs.begin(), it, [&](const std::string& other) { return same_file(other, *it); }))
-            throw InputError("--output: \"" + *it + "\" is given twice");
+            throw InputError("--output: \"" + *it + "\" is specified twice");
     }
 }
 

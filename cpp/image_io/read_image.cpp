@@ -161,7 +161,7 @@ void clamp_negative_radiance(Environment& environment, const std::string& path, 
         if (is_negative) negative.add(i);
     }
     if (invalid.count > 0)
-        throw ImageFileError(path + ": " + counted_pixels(invalid.count) + " no light" + invalid.text(environment) +
+        throw ImageFileError(path + ": " + counted_pixels(invalid.count) + " invalid" + invalid.text(environment) +
                              "; expected numbers from 0 to 1e20 cd/m^2");
     if (negative.count == 0) return;
     const std::string text = counted_pixels(negative.count) + " negative" + negative.text(environment);

@@ -26,7 +26,7 @@ std::vector<double> sorted_unique(std::vector<double> times) {
 
 std::string key_time_error(double time_s, const double* previous) {
     if (!(std::fabs(time_s) <= kMaxTime_s)) return "a time must lie within 1e9 s";
-    return previous && !(*previous < time_s) ? "the times must rise" : "";
+    return previous && !(*previous < time_s) ? "the times must be strictly increasing" : "";
 }
 
 std::vector<Affine<double>> uniform_keys(const Motion& motion, const TimeInterval& interval, int steps) {

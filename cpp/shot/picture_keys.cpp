@@ -265,16 +265,17 @@ std::vector<ShotKey> picture_keys() {
     constexpr const char *kNumber = "a number", *kWhole = "a whole number";
     return {
         setting("spp", "--spp", "N", whole_or_auto, "a whole number or auto",
-         "Samples per pixel, or auto: by tile of the film, until the noise goal is reached, by default 1 code",
+         "Samples per pixel; auto: in each tile of the film until the noise goal is reached, by default 1 code",
          "until the noise is 2 codes, for 60 seconds at most", {"noise", "noise_codes", "seconds", "max_spp"},
          set_spp, get_spp, "A tile has 16 x 16 pixels (docs/sampling.md)."),
-        setting("noise", "--noise", "SHARE", number, kNumber,
-         "Noise goal, unless spp is a number: relative to a tile's light, such as 0.01", "", {"noise_codes", "spp"},
+        setting("noise", "--noise", "FRACTION", number, kNumber,
+         "Noise goal, unless spp is a number, as a fraction of a tile's mean, such as 0.01", "", {"noise_codes", "spp"},
          set_noise<set_number<&P::noise, &N::noise>>, get_value<&P::noise, &N::noise>,
          "It is the RMS error of the tile's pixels as a fraction of their mean, or of a hundredth of white if that is "
          "larger."),
         setting("noise_codes", "--noise-codes", "CODES", number, kNumber,
-         "The same noise goal in 8-bit codes of the picture with the linear tone curve, under every view", "",
+         "Noise goal, unless spp is a number, in 8-bit codes of the picture with the linear tone curve, whatever the "
+         "view", "",
          {"noise", "spp"},
          set_noise<set_number<&P::noise, &N::noise_codes>>, get_value<&P::noise, &N::noise_codes>),
         setting("seconds", "--seconds", "SECONDS", number, kNumber,
@@ -300,7 +301,8 @@ std::vector<ShotKey> picture_keys() {
          "paths", {}, set_named<named<kTransports>, &P::settings, &S::transport>,
          get_name<kTransports, &P::settings, &S::transport>),
         setting("clamp_cd_m2", "--clamp", "CD_M2", number, kNumber,
-         "Largest radiance of indirect light in cd/m^2: fewer fireflies, but a picture that is too dark", "0: no limit", {},
+         "Largest radiance of indirect light in any colour channel, in cd/m^2: fewer fireflies, but a picture that is "
+         "too dark", "0: no limit", {},
          set_number<&P::settings, &S::clamp>, get_value<&P::settings, &S::clamp>),
         {"tone", "--tone", kGroup, "CURVE", text, one_of(kToneCurves),
          "Tone mapping of developed pictures: film (soft highlights) or linear (clipped)", "film",
@@ -321,7 +323,8 @@ std::vector<ShotKey> picture_keys() {
          "as the picture states", {}, read_ocio_name<&OcioRequest::environment_color_space>},
         {"texture_color_space", "--texture-color-space", kGroup, "NAME", text,
          "the name of a colour space of the configuration, or file_rules",
-         "The same for textures of colours", "as each picture states", {},
+         "Colour space of colour textures in the OpenColorIO configuration; file_rules: by their files' names",
+         "as each picture states", {},
          read_ocio_name<&OcioRequest::texture_color_space>},
         {"exr_color_space", "--exr-color-space", kGroup, "NAME", text, one_of(kExrColorSpaces),
          "Colour space of .exr files: linear Rec. 709 or ACEScg", "rec709", {}, read_exr_color_space},
@@ -330,8 +333,8 @@ std::vector<ShotKey> picture_keys() {
          set_names<layers_named, &P::settings, &S::layers>, get_names<&P::settings, &S::layers>,
          "A list in shot files. all does not include dual_pixel (docs/layers.md)."),
         setting("effects", "--effects", "NAMES", names, "names (rc.effects() lists them)",
-         "Effects that are also simulated or, with a minus, left out, separated by commas after a "
-         "\"=\": " + effect_names(),
+         "Effects to simulate or, with a minus, to leave out, as in --effects=auto,ghosts,-motion_blur: " +
+             effect_names(),
          "auto: what the shot calls for", {},
          set_names<effects_named, &P::settings, &S::effects>, get_names<&P::settings, &S::effects>,
          "A list in shot files, such as [\"dispersion\", \"-motion_blur\"]; the empty list switches all effects off. With "
@@ -342,11 +345,11 @@ std::vector<ShotKey> picture_keys() {
          "0.25)", "photo", {"threshold_px", "threshold_codes"},
          set_named<quality_named, &P::settings, &S::thresholds>),
         setting("threshold_px", "--threshold-px", "PIXELS", number, kNumber,
-         "Threshold in pixels, instead of that of the quality", "", {},
+         "Threshold in pixels that replaces that of the quality", "", {},
          set_number<&P::settings, &S::thresholds, &T::pixels>,
          get_value<&P::settings, &S::thresholds, &T::pixels>),
         setting("threshold_codes", "--threshold-codes", "CODES", number, kNumber,
-         "Threshold in 8-bit codes, instead of that of the quality", "", {},
+         "Threshold in 8-bit codes that replaces that of the quality", "", {},
          set_number<&P::settings, &S::thresholds, &T::codes>,
          get_value<&P::settings, &S::thresholds, &T::codes>),
         setting("illuminant", "--illuminant", "SPECTRUM", spectrum,

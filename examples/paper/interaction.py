@@ -28,7 +28,7 @@ def experiment(device: str) -> Experiment:
     try:
         from realcam.viewer.lens_bench import LensBench
     except ImportError as error:
-        return Experiment(title, (f"Left out: it needs {error.name}; pip install realcam[view] brings it.",))
+        return Experiment(title, (f"Left out: it needs {error.name}; pip install realcam[view] installs it.",))
     lens, scene = Lens.load("double-gauss-50mm"), frame_scene()
     camera = frame_camera().replace(lens=lens.focused(4.0), film=Film(24, 24, (SIDE, SIDE))).metered(scene)
     bench = LensBench(Shot(scene, camera, RenderSettings(effects=())), device=device)

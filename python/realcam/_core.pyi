@@ -3206,11 +3206,12 @@ class RenderSettings:
     """
     Settings of a picture, for rc.render, rc.Session, rc.LiveView, rc.plan and rc.Shot. Immutable.
 
-    spp: Samples per pixel, or auto: by tile of the film, until the noise goal is reached, by default 1 code [64]. A tile
+    spp: Samples per pixel; auto: in each tile of the film until the noise goal is reached, by default 1 code [64]. A tile
       has 16 x 16 pixels (docs/sampling.md).
-    noise: Noise goal, unless spp is a number: relative to a tile's light, such as 0.01. It is the RMS error of the tile's
-      pixels as a fraction of their mean, or of a hundredth of white if that is larger.
-    noise_codes: The same noise goal in 8-bit codes of the picture with the linear tone curve, under every view.
+    noise: Noise goal, unless spp is a number, as a fraction of a tile's mean, such as 0.01. It is the RMS error of the
+      tile's pixels as a fraction of their mean, or of a hundredth of white if that is larger.
+    noise_codes: Noise goal, unless spp is a number, in 8-bit codes of the picture with the linear tone curve, whatever the
+      view.
     seconds: Time limit for taking samples, unless spp is a number. A warning is issued if the noise goal is not reached.
     max_spp: Largest number of samples per pixel, unless spp is a number [4096].
     filter: Filter of the pixels; box: the pixel's own area; tent: two pixels wide; gaussian: three pixels wide, with a
@@ -3220,20 +3221,20 @@ class RenderSettings:
       auto, threshold_codes decides (docs/plan.md).
     transport: paths: all light paths; whitted: direct light, and reflections and refractions of mirrors and smooth glass
       [paths].
-    clamp_cd_m2: Largest radiance of indirect light in cd/m^2: fewer fireflies, but a picture that is too dark [0: no
-      limit].
+    clamp_cd_m2: Largest radiance of indirect light in any colour channel, in cd/m^2: fewer fireflies, but a picture that is
+      too dark [0: no limit].
     layers: Layers also written to .exr, separated by commas: all, or some of depth, normal, albedo, circle_of_confusion_mm,
       sample_count, variance, depth_middle, normal_middle, object_id, material_id, motion, position_middle, traced_light,
       dual_pixel_left, dual_pixel_right [none]. A list in shot files. all does not include dual_pixel (docs/layers.md).
-    effects: Effects that are also simulated or, with a minus, left out, separated by commas after a "=": auto, none,
+    effects: Effects to simulate or, with a minus, to leave out, as in --effects=auto,ghosts,-motion_blur: auto, none,
       dispersion, coatings, ghosts, film_reflection, diffraction, -motion_blur, -rolling_shutter [auto: what the shot calls
       for]. A list in shot files, such as ["dispersion", "-motion_blur"]; the empty list switches all effects off. With
       auto, the planner also selects the cheapest camera model that shows the effects (docs/plan.md). A warning is issued
       for effects that the lens cannot show.
     quality: Size below which effects are left out by auto: draft (2 pixels, 4 codes), photo (0.5, 1) or reference (0.1,
       0.25) [photo].
-    threshold_px: Threshold in pixels, instead of that of the quality.
-    threshold_codes: Threshold in 8-bit codes, instead of that of the quality.
+    threshold_px: Threshold in pixels that replaces that of the quality.
+    threshold_codes: Threshold in 8-bit codes that replaces that of the quality.
     illuminant: Spectrum of all light, for dispersion and diffraction: D65, D50, A, FL2, a wavelength in nm, or a table of
       wavelengths and powers (400:0.5,550:1,700:0.2) [D65]. Points are a list of pairs in shot files and in Python
       (docs/dispersion.md).
@@ -3285,12 +3286,12 @@ class RenderSettings:
     @property
     def clamp_cd_m2(self) -> float:
         """
-        Largest radiance of indirect light in cd/m^2: fewer fireflies, but a picture that is too dark [0: no limit].
+        Largest radiance of indirect light in any colour channel, in cd/m^2: fewer fireflies, but a picture that is too dark [0: no limit].
         """
     @property
     def effects(self) -> tuple[str, ...]:
         """
-        Effects that are also simulated or, with a minus, left out, separated by commas after a "=": auto, none, dispersion, coatings, ghosts, film_reflection, diffraction, -motion_blur, -rolling_shutter [auto: what the shot calls for]. A list in shot files, such as ["dispersion", "-motion_blur"]; the empty list switches all effects off. With auto, the planner also selects the cheapest camera model that shows the effects (docs/plan.md). A warning is issued for effects that the lens cannot show.
+        Effects to simulate or, with a minus, to leave out, as in --effects=auto,ghosts,-motion_blur: auto, none, dispersion, coatings, ghosts, film_reflection, diffraction, -motion_blur, -rolling_shutter [auto: what the shot calls for]. A list in shot files, such as ["dispersion", "-motion_blur"]; the empty list switches all effects off. With auto, the planner also selects the cheapest camera model that shows the effects (docs/plan.md). A warning is issued for effects that the lens cannot show.
         """
     @property
     def filter(self) -> str:
@@ -3330,12 +3331,12 @@ class RenderSettings:
     @property
     def noise(self) -> float | None:
         """
-        Noise goal, unless spp is a number: relative to a tile's light, such as 0.01. It is the RMS error of the tile's pixels as a fraction of their mean, or of a hundredth of white if that is larger.
+        Noise goal, unless spp is a number, as a fraction of a tile's mean, such as 0.01. It is the RMS error of the tile's pixels as a fraction of their mean, or of a hundredth of white if that is larger.
         """
     @property
     def noise_codes(self) -> float | None:
         """
-        The same noise goal in 8-bit codes of the picture with the linear tone curve, under every view.
+        Noise goal, unless spp is a number, in 8-bit codes of the picture with the linear tone curve, whatever the view.
         """
     @property
     def pupil_sampling(self) -> str:
@@ -3355,7 +3356,7 @@ class RenderSettings:
     @property
     def spp(self) -> int | Literal["auto"]:
         """
-        Samples per pixel, or auto: by tile of the film, until the noise goal is reached, by default 1 code [64]. A tile has 16 x 16 pixels (docs/sampling.md).
+        Samples per pixel; auto: in each tile of the film until the noise goal is reached, by default 1 code [64]. A tile has 16 x 16 pixels (docs/sampling.md).
         """
     @property
     def threads(self) -> int:
@@ -3365,12 +3366,12 @@ class RenderSettings:
     @property
     def threshold_codes(self) -> float:
         """
-        Threshold in 8-bit codes, instead of that of the quality.
+        Threshold in 8-bit codes that replaces that of the quality.
         """
     @property
     def threshold_px(self) -> float:
         """
-        Threshold in pixels, instead of that of the quality.
+        Threshold in pixels that replaces that of the quality.
         """
     @property
     def transport(self) -> str:

@@ -43,7 +43,9 @@ def _functions() -> dict[str, Any]:
                 demosaicing_CFA_Bayer_Menon2007,
             )
     except ImportError as error:
-        raise InputError(f"colour-demosaicing is not installed ({error}); pip install realcam[raw] brings it") from None
+        raise InputError(
+            f"colour-demosaicing is not installed ({error}); pip install realcam[raw] installs it"
+        ) from None
     return {
         "menon": demosaicing_CFA_Bayer_Menon2007,
         "malvar": demosaicing_CFA_Bayer_Malvar2004,

@@ -62,7 +62,7 @@ def write(raw: Negative, path: str | os.PathLike[str]) -> None:
     try:
         import tifffile
     except ImportError as error:
-        raise InputError(f"tifffile is not installed ({error}); pip install realcam[raw] brings it") from None
+        raise InputError(f"tifffile is not installed ({error}); pip install realcam[raw] installs it") from None
     buffer = io.BytesIO()
     with tifffile.TiffWriter(buffer, byteorder="<") as file:
         file.write(

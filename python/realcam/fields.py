@@ -104,7 +104,7 @@ def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field,
             height *= 0.95
         else:
             raise InputError(
-                f'no light of lens "{lens.name}" reaches the film between its centre and {share:.3g} of its '
+                f'no light through lens "{lens.name}" reaches the film between its centre and {share:.3g} of its '
                 f"half side along {'xy'[axis]}"
             )
     return tuple(fields)

@@ -109,7 +109,7 @@ class FilmPart(PickledByFields):
         except InputError as error:
             raise InputError(f"{os.fspath(path)}: {error}") from None
         except (KeyError, ValueError, TypeError, AttributeError, OverflowError):
-            raise InputError(f"{os.fspath(path)}: this is no part of a film, or damaged") from None
+            raise InputError(f"{os.fspath(path)}: is not a part of a film, or is damaged") from None
 
     def _about(self) -> dict[str, Any]:
         """Returns the description in the archive: everything but the arrays."""

@@ -45,7 +45,9 @@ def imported(package: str, extra: str) -> Any:
     except ImportError:
         from ._core import InputError  # not above: this module advises when the extension cannot be imported
 
-        raise InputError(f"the Python package {package} is missing; pip install 'realcam[{extra}]' brings it") from None
+        raise InputError(
+            f"the Python package {package} is missing; pip install 'realcam[{extra}]' installs it"
+        ) from None
 
 
 def advised(error: ImportError) -> ImportError:

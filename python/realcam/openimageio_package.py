@@ -18,7 +18,7 @@ try:
     import OpenImageIO as oiio
 except ImportError as error:
     raise ImportError(
-        f"picture files need the package OpenImageIO; pip install OpenImageIO brings it ({error})"
+        f"picture files need the package OpenImageIO; pip install OpenImageIO installs it ({error})"
     ) from None
 
 

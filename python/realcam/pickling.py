@@ -28,7 +28,9 @@ def restored(kind: str | type, state_format: int, version: str, state: Any) -> A
     made_by = version if isinstance(version, str) and len(version) <= 20 and version.isprintable() else "?"
     type_ = getattr(_core, kind, None) if isinstance(kind, str) else kind
     if not isinstance(type_, type) or not hasattr(type_, "_restored"):
-        raise _core.InputError(f"realcam {_core.__version__} pickles no such object; realcam {made_by} wrote it")
+        raise _core.InputError(
+            f"realcam {_core.__version__} cannot restore this object, which realcam {made_by} pickled"
+        )
     name = type_.__name__
     if not isinstance(state_format, int) or state_format != FORMAT:
         other = f"{state_format:d}" if isinstance(state_format, int) and abs(state_format) < 10**9 else "?"

@@ -272,7 +272,7 @@ def exposed_film(
     if nan_count == width * height:
         raise InputError("the film holds no exposure: all of its pixels are NaN")
     if nan_count > 0:
-        warnings.warn(f"{nan_count} pixels of the film are NaN: no light is taken for them", stacklevel=stacklevel)
+        warnings.warn(f"{nan_count} pixels of the film are NaN and count as unexposed", stacklevel=stacklevel)
     columns, rows = sensor.resolution or (width, height)
     if width > columns or height > rows:
         raise InputError(
@@ -283,9 +283,9 @@ def exposed_film(
     if abs(pitch_um / film_pitch_um - 1) > 0.01:
         size = f"{columns * pitch_um / 1000:.4g} x {rows * pitch_um / 1000:.4g} mm"
         warnings.warn(
-            f"the film's pixels of {film_pitch_um:.4g} um are exposed as the sensor's of {pitch_um:.4g} um: noise is "
-            f"the sensor's, sharpness the film's (a film like the sensor, {size} of {columns} x {rows} pixels, makes "
-            "both agree)",
+            f"the film's pixels of {film_pitch_um:.4g} um are exposed as the sensor's of {pitch_um:.4g} um: the noise "
+            f"is the sensor's and the sharpness the film's; both are the sensor's on a film of {size} of {columns} x "
+            f"{rows} pixels",
             stacklevel=stacklevel,
         )
     mosaic = _core._expose(

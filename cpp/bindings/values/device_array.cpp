@@ -133,7 +133,7 @@ std::int64_t count_of(const Layout& layout, const std::string& name) {
                              "(.contiguous() of torch, cupy.ascontiguousarray)");
     }
     if (layout.address % size_of(layout.type) != 0)
-        throw InputError(name + " lies on a GPU at an address that is no multiple of the size of its numbers");
+        throw InputError(name + " lies on a GPU at an address that is not a multiple of the size of its numbers");
     return count;
 }
 

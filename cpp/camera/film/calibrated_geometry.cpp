@@ -70,7 +70,7 @@ void check_film(const CalibratedGeometry& geometry, const Film& film) {
     if (geometry.film_width_mm != film.width_mm || geometry.film_height_mm != film.height_mm ||
         geometry.film_shift_mm != film.shift_mm)
         throw InputError(
-            "the camera's geometry is that of a calibration for a film of another size or shift; make the camera anew "
+            "the camera's geometry is that of a calibration for a film of another size or shift; create the camera "
             "from the calibration (Calibration.camera)");
 }
 

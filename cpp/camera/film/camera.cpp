@@ -73,7 +73,7 @@ void check_ray_pairs(const Camera& camera) {
     if (camera.model != CameraModel::polynomial_lens) throw InputError(start + "the camera's model must be polynomial");
     if (camera.geometry) throw InputError(start + "they have no chief rays, which a calibration moves");
     if (!(camera.lens == paraxial_lens(*camera.ray_pairs)))
-        throw InputError(start + "another lens, f-number, focus or zoom needs rays of its own");
+        throw InputError(start + "another lens, f-number, focus or zoom needs other measurements");
 }
 
 }  // namespace

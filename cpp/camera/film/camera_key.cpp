@@ -140,7 +140,8 @@ void validate(const CameraKey& key) {
     }
     if (!has_value)
         throw InputError(
-            "a key of the camera has no value: lens, focus, focal length, f-number, blades, exposure time, ISO or "
+            "a key of the camera has no value; expected one of lens, focus, focal length, f-number, blades, exposure "
+            "time, ISO or "
             "shift of the film");
     try {
         check_iris({key.blades.value_or(0), key.blade_rounding.value_or(0), 0});

@@ -113,7 +113,7 @@ Glass glass_from_table(const TomlTable& table) {
             if (!pair || pair->size() != 2) table.fail("each row of \"table\" must be [wavelength in nm, index]", &row);
             list.push_back({table.as_number((*pair)[0], "a wavelength"), table.as_number((*pair)[1], "an index")});
             if (!wavelengths.insert(list.back().wavelength_nm).second)
-                table.fail("\"table\" gives a wavelength twice", &row);
+                table.fail("\"table\" contains a wavelength twice", &row);
             if (!(list.back().wavelength_nm > 0)) table.fail("wavelengths are positive numbers, in nm", &row);
         }
         return Glass::table(std::move(list));
@@ -133,7 +133,7 @@ Glass catalogue_glass(const std::string& name) {
         if (std::next(first) != last) {
             std::string choices;
             for (auto it = first; it != last; ++it) choices += (choices.empty() ? "\"" : ", \"") + it->second + '"';
-            throw InputError("the glass name \"" + name + "\" stands in several catalogues; specify one of " + choices);
+            throw InputError("the glass name \"" + name + "\" is in several catalogues; specify one of " + choices);
         }
         full = first->second;
     }

@@ -80,9 +80,9 @@ LensSystem read_toml(std::string_view bytes, const std::string& file, const Lens
         if (suffix == ".toml") throw;
         const std::string why = suffix.empty() ? "it has no ending"
                                                : "its ending is " + in_quotes(file.substr(file.size() - suffix.size()));
-        throw LensFileError(
-            "is no lens file that is read: " + why + ", and its text is no TOML; expected " + lens_suffixes(false),
-            file);
+        throw LensFileError("is not a lens file of a known format: " + why + ", and its text is not TOML; expected " +
+                                lens_suffixes(false),
+                            file);
     }
     LensSystem lens = lens_from_table(table, file, options.keep_going);
     LensGlasses(options).check_all_used();  // reports that this file defines its own glasses

@@ -243,7 +243,7 @@ std::pair<std::string, Glass> named_glass(const std::string& text) {
     }
     if (!rest.empty() || !std::isfinite(*n_d) || !std::isfinite(v_d))
         throw InputError(in_quotes(text) +
-                         ": expected NAME=n_d,V_d, as in CAF2=1.4338,95.1, or NAME=n where it has no dispersion");
+                         ": expected NAME=n_d,V_d, as in CAF2=1.4338,95.1, or NAME=n for a glass without dispersion");
     return {name, glass_of_pair(*n_d, v_d)};
 }
 

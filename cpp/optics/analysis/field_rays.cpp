@@ -14,7 +14,7 @@ FieldRays field_rays(const LensSystem& lens, double wavelength_nm, const FieldPo
     FieldRays result{field.angle_rad, 1 / lens.film_radius_of_curvature, {}, std::move(pattern), {}, aim.chief_ray()};
     const std::string where = field.text();
     if (result.chief.status != RayStatus::ok)
-        throw InputError("the ray " + where + " through the middle of the stop does not leave lens \"" + lens.name +
+        throw InputError("the ray " + where + " through the centre of the stop does not leave lens \"" + lens.name +
                          "\"");
     if (field.film || !lens.is_rotational()) {
         const Vec3d at_film = result.on_film(result.chief, lens.film_distance);

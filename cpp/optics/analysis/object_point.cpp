@@ -83,7 +83,7 @@ void ObjectPoint::set_by_chief_ray(const LensSystem& lens, const FieldPoint& fie
     const std::optional<ChiefRay> chief =
         field.film ? chief_ray_of_film_point(rays, *field.film) : chief_ray_of_angle(rays, field.angle_rad);
     if (!chief)
-        throw InputError("no ray " + field.text() + " reaches the middle of the stop of lens \"" + lens.name + "\"");
+        throw InputError("no ray " + field.text() + " reaches the centre of the stop of lens \"" + lens.name + "\"");
     centre = chief->scene;
     towards = chief->scene_direction;
     inverse_distance = towards.z / (centre.z - plane);

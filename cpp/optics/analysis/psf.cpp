@@ -140,7 +140,7 @@ void add_waves(const std::vector<ColourPart>& parts, FilmGrid grid, std::vector<
 }
 
 PreparedPsf prepare(const LensSystem& lens, const PsfRequest& request, const RayLoop& loop) {
-    if (request.colours.empty()) throw InputError("psf: no wavelength is given");
+    if (request.colours.empty()) throw InputError("psf: expected at least one wavelength");
     if (!(request.size >= 2 && request.size <= 4096)) throw InputError("psf: size must lie between 2 and 4096");
     if (!(request.pitch_um >= 0 && request.pitch_um < 1e6)) throw InputError("psf: pitch_um must be a positive length");
     if (!(request.rays >= 0 && static_cast<double>(request.rays) <= kMaxWaves))

@@ -120,7 +120,8 @@ PsfPupil psf_pupil(const psf_detail::ColourPart& part, const Psf& psf, const Ray
                      static_cast<std::size_t>(column)];
     };
     const std::optional<LocalWave> middle = local_wave(bundle, bundle.middle);
-    if (!middle) throw InputError("psf: no ray in the middle of the light reaches the film; use the method \"direct\"");
+    if (!middle)
+        throw InputError("psf: no ray in the middle of the bundle reaches the film; use the method \"direct\"");
     loop.for_all(static_cast<std::size_t>(rows), [&](std::size_t first, std::size_t last) {
         for (auto row = static_cast<int>(first); row < static_cast<int>(last); ++row) {
             // From the middle column outwards, the search in each cell starts at the last cell that passes, because

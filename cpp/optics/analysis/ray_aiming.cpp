@@ -132,7 +132,7 @@ std::optional<RayAimer::Entry> RayAimer::aimed_from_chief(Vec2<double> target) c
 void RayAimer::find_chief_ray(const LensSystem& lens, const FieldPoint& field) {
     const std::optional<Entry> entry = aimed(object, {0, 0}, chief_);
     if (!entry)
-        throw InputError("no ray " + field.text() + " reaches the middle of the stop of lens \"" + lens.name + "\"");
+        throw InputError("no ray " + field.text() + " reaches the centre of the stop of lens \"" + lens.name + "\"");
     chief_ = *entry;
 }
 
@@ -149,7 +149,7 @@ void RayAimer::follow_chief_ray(const LensSystem& lens, double wavelength_nm, co
             current_angle = next;
         } else if ((step *= 0.5) < kMinStep) {
             throw InputError("no ray at a field angle of " + object_point_detail::degrees(field.angle_rad) +
-                             " reaches the middle of the stop of lens \"" + lens.name + "\"");
+                             " reaches the centre of the stop of lens \"" + lens.name + "\"");
         }
     }
 }

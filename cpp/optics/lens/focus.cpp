@@ -210,7 +210,8 @@ LensSystem focused(const LensSystem& lens, double focus_distance) {
         throw InputError("cannot focus lens \"" + lens.name + "\": no ray from the object passes it");
     if (!(result.film_distance > 0) && lens.is_rotational())
         throw InputError("cannot focus lens \"" + lens.name + "\": it makes no real image behind its last surface");
-    if (const std::string why = film_distance_error(result); !why.empty()) fail(lens, focus_distance, "cannot: " + why);
+    if (const std::string why = film_distance_error(result); !why.empty())
+        fail(lens, focus_distance, "would need an impossible film distance: " + why);
     return result;
 }
 

@@ -78,7 +78,7 @@ LensSystem reversed(const LensSystem& lens, std::optional<double> film_distance)
     lens.require_rotational("turning a lens round");
     const std::size_t n = lens.surfaces.size();
     if (!medium_before(lens, n).is_air())
-        throw LensFileError("the lens cannot be turned round: the medium behind its last surface is not air");
+        throw LensFileError("the lens cannot be reversed: the medium behind its last surface is not air");
     return lens_edits_detail::edited_in_all_states(lens, [&](const LensSystem& l) {
         LensSystem result = l;
         for (std::size_t i = 0; i < n; ++i) {
@@ -98,7 +98,7 @@ LensSystem reversed(const LensSystem& lens, std::optional<double> film_distance)
         result.film_distance = film_distance.value_or(best_focus_distance(result, result.wavelength_nm, kInfinity));
         if (!film_distance && !(result.film_distance > 0))
             throw LensFileError(
-                "turned round, the lens makes no real image of infinity behind its last surface; a film distance is "
+                "the reversed lens makes no real image of infinity behind its last surface; a film distance is "
                 "required");
         return result;
     });

@@ -78,7 +78,7 @@ struct FilmDerivatives {
 [[noreturn]] void fail(const LensSystem& lens) {
     throw InputError(
         "lens \"" + lens.name +
-        "\" has no first-order data: no ray is found from the middle of the film to the middle of the stop "
+        "\" has no first-order data: no ray is found from the centre of the film to the centre of the stop "
         "and out of the lens");
 }
 

@@ -17,7 +17,7 @@ void check_material(const CoatingMaterial& material, const std::string& what) {
         if (!(p.wavelength_nm > 0) || !std::isfinite(p.wavelength_nm))
             throw InputError("the wavelengths of " + what + " must be positive numbers, in nm");
         if (i > 0 && !(p.wavelength_nm > material.points[i - 1].wavelength_nm))
-            throw InputError("the wavelengths of " + what + " must rise from point to point");
+            throw InputError("the wavelengths of " + what + " must be strictly increasing");
     }
     if (!material.points.empty()) return;
     const auto [first, last] = material.glass.known_nm();

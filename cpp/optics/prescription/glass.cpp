@@ -44,7 +44,7 @@ Glass Glass::table(std::vector<TablePoint> points) {
               [](const TablePoint& a, const TablePoint& b) { return a.wavelength_nm < b.wavelength_nm; });
     const auto repeated = std::adjacent_find(
         points.begin(), points.end(), [](const auto& a, const auto& b) { return a.wavelength_nm == b.wavelength_nm; });
-    if (repeated != points.end()) throw InputError("a glass table gives a wavelength twice");
+    if (repeated != points.end()) throw InputError("a glass table contains a wavelength twice");
     return {Formula::table, {}, std::move(points)};
 }
 

@@ -74,7 +74,7 @@ const SceneCamera* chosen_camera(const Assembly& assembly, const ViewRequest& re
         if (camera.name != request.camera) continue;
         if (is_placed) throw InputError("a camera of the scene and a position or look-at exclude each other");
         if (camera.has_pose()) return &camera;
-        throw InputError("the scene's camera \"" + camera.name + "\" is orthographic, which no lens is");
+        throw InputError("the scene's camera \"" + camera.name + "\" is orthographic; expected a perspective camera");
     }
     if (request.camera == ViewRequest::kNoCamera) return nullptr;
     throw InputError("the scene has no camera \"" + request.camera + "\"; " +

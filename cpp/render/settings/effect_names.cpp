@@ -87,7 +87,7 @@ EffectChoice effects_named(const std::vector<std::string>& names) {
         if (equals == std::string::npos) continue;
         const std::optional<double> value = fraction_from(name.substr(equals + 1));
         if (!found->parameter || !on || !value)
-            throw InputError("\"" + name.substr(0, 60) + "\" is no effect; " +
+            throw InputError("\"" + name.substr(0, 60) + "\" is not an effect; " +
                              (found->parameter ? "expected a number from 0 to 1 after the equals sign"
                                                : "the effect " + plain + " has no parameter"));
         effects.*found->parameter = *value;

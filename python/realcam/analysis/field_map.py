@@ -119,7 +119,7 @@ def field_map(
     if quantity == "illumination":
         values = 100 * values / lens.film_pupil((0.0, 0.0), nm).irradiance
     if np.isnan(values).all():
-        raise InputError(f'no light of lens "{lens.name}" reaches any of the film points')
+        raise InputError(f'no light through lens "{lens.name}" reaches any of the film points')
     mtf_frequency = frequency if quantity.startswith("mtf") else None
     return FieldMap(quantity, QUANTITIES[quantity].unit, x, y, values, vectors, mtf_frequency)
 

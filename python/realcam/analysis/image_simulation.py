@@ -255,7 +255,7 @@ class _FieldLight:
         self.from_pupil_m = self.distance_m + (1e-3 * pupil if math.isfinite(pupil) else 0.0)
         self.central_illuminance = self._illuminance((0.0, 0.0))
         if not self.central_illuminance > 0 or np.isnan(self.direction((0.0, 0.0))).any():
-            raise InputError(f'no light of lens "{lens.name}" reaches the middle of the film')
+            raise InputError(f'no light through lens "{lens.name}" reaches the centre of the film')
         for nm in wavelengths:  # raises if a glass has no data at the wavelength
             self.chief_ray_mm((0.0, 0.0), float(nm))
         if lens.is_rotational:

@@ -90,7 +90,7 @@ def _only_value(values: Sequence[float] | Doubles | None, name: str) -> float | 
     if values is None:
         return None
     if len(values) != 1:
-        raise InputError(f"this plot is of one {name}; {len(values)} are given")
+        raise InputError(f"this plot shows one {name}; found {len(values)}")
     return float(values[0])
 
 

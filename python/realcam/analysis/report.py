@@ -46,7 +46,7 @@ def save_report(
     if lens.is_rotational:
         fields = three_fields(lens, fields_deg, source)
         if len(fields) != 3:
-            raise InputError(f"a report shows three fields; {len(fields)} are given")
+            raise InputError(f"a report shows three fields; found {len(fields)}")
         plots = ReportPlots(source, fields, colours)
         facts = facts_of(source, fields.tolist(), colours)
     else:

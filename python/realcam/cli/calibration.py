@@ -14,7 +14,13 @@ from . import options
 app = typer.Typer(help="Show and convert calibrations of cameras.", rich_markup_mode=None)
 
 File = Annotated[Path, typer.Argument(help="A calibration file; docs/calibration.md lists the formats", metavar="FILE")]
-CameraName = Annotated[str | None, typer.Option("--camera", metavar="NAME", help="One of several cameras of the file")]
+
+
+def camera_option(default: str) -> Any:
+    return typer.Option("--camera", metavar="NAME", help=f"One of several cameras of the file [{default}]")
+
+
+CameraNames = Annotated[str | None, camera_option("all of them")]
 Size = Annotated[
     Any,
     options.parsed(options.size, "--size", "WxH", "Size of the picture in pixels, for formats that do not state it"),
@@ -22,7 +28,7 @@ Size = Annotated[
 
 
 @app.command("show")
-def show(file: File, camera: CameraName = None, size: Size = None, as_json: options.AsJson = False) -> None:
+def show(file: File, camera: CameraNames = None, size: Size = None, as_json: options.AsJson = False) -> None:
     """Print the cameras of a calibration file."""
     from ..calibration import Calibration
 
@@ -70,7 +76,7 @@ def show(file: File, camera: CameraName = None, size: Size = None, as_json: opti
 def convert(
     file: File,
     output: Annotated[Path, typer.Argument(help="The file to write, such as camera_info.yaml", metavar="OUT")],
-    camera: CameraName = None,
+    camera: CameraNames = None,
     size: Size = None,
     to: Annotated[str | None, typer.Option(metavar="FORMAT", help="Format of the output [by its name]")] = None,
     quiet: options.Quiet = False,
@@ -90,7 +96,7 @@ def undistort(
     file: File,
     picture: Annotated[Path, typer.Argument(help="A picture of this camera", metavar="PICTURE")],
     output: Annotated[Path, options.output("The picture to write")],
-    camera: CameraName = None,
+    camera: Annotated[str | None, camera_option("the only one")] = None,
     size: Size = None,
     quiet: options.Quiet = False,
 ) -> None:

@@ -33,15 +33,17 @@ def compare(
     shot: options.ShotName,
     vary: Annotated[
         str,
-        typer.Option(metavar="NAME=VALUE,...", help="f_number=2,4,8, lens=NAME,... (or files), or zoom=POSITION,..."),
+        typer.Option(
+            metavar="NAME=VALUE,...", help="What varies: f_number=2,4,8, lens=NAME,... (or files), or zoom=POSITION,..."
+        ),
     ],
     output: Annotated[Path, options.output("The sheet, as .png, .jpg, .tif, .webp, .svg or .pdf")],
     changes: ShotOptions,  # type: ignore[valid-type]
     size: Annotated[
-        int, typer.Option(metavar="PIXELS", help="Pixels of the longer side of each picture", min=8, max=4096)
+        int, typer.Option(metavar="PIXELS", help="Size of the longer side of each picture in pixels", min=8, max=4096)
     ] = 480,
-    columns: Annotated[int, typer.Option(metavar="N", help="Pictures in a row", min=1, max=100)] = 3,
-    denoise: Annotated[bool, typer.Option("--denoise", help="Remove the noise (realcam[denoise])")] = False,
+    columns: Annotated[int, typer.Option(metavar="N", help="Number of pictures in a row", min=1, max=100)] = 3,
+    denoise: Annotated[bool, typer.Option("--denoise", help="Denoise the pictures (realcam[denoise])")] = False,
     theme: lens_options.ThemeName = "light",
     device: options.Device = "auto",
     as_json: options.AsJson = False,
@@ -59,7 +61,7 @@ def compare(
     theme_named(theme)
     name, equals, values = vary.partition("=")
     if not equals or not all(values.split(",")):
-        raise InputError(f'--vary: "{vary:.60}": expected NAME=VALUE,..., as f_number=2,4,8')
+        raise InputError(f'--vary: "{vary:.60}": expected NAME=VALUE,..., such as f_number=2,4,8')
     name = name.replace("-", "_")
     words = words_of(changes)
     f_number = words.pop("f_number", None)

@@ -29,7 +29,9 @@ def cost(
     output: Annotated[
         list[Path] | None, options.output("Error over time as .svg, or as .html with the table; may be repeated")
     ] = None,
-    size: Annotated[int, typer.Option(metavar="PIXELS", help="Pixels of the longer side", min=8, max=4096)] = 320,
+    size: Annotated[
+        int, typer.Option(metavar="PIXELS", help="Size of the longer side in pixels", min=8, max=4096)
+    ] = 320,
     max_spp: Annotated[
         int,
         typer.Option(

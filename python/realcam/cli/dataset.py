@@ -32,13 +32,14 @@ def dataset(
     farm: FarmOptions,
     count: Annotated[int | None, typer.Option(metavar="N", help="Number of pictures [the recipe's]", min=1)] = None,
     workers: Annotated[
-        int | None, typer.Option(metavar="N", help="Processes [one for each core; one for a GPU]", min=1, max=4096)
+        int | None,
+        typer.Option(metavar="N", help="Number of processes [one for each core; 1 on a GPU]", min=1, max=4096),
     ] = None,
     part: PartOption = None,
     threads: Annotated[
         int | None,
         typer.Option(
-            metavar="N", help="Threads of each process; 0: all cores [1; all with --part or a GPU]", min=0, max=4096
+            metavar="N", help="Number of threads of each process; 0: all [1; all with --part or a GPU]", min=0, max=4096
         ),
     ] = None,
     scheduler: Scheduler = None,

@@ -30,7 +30,9 @@ app = typer.Typer(help="Inspect, compare, convert and improve lenses.", rich_mar
 Circle = Annotated[
     float | None,
     typer.Option(
-        "--circle-of-confusion", metavar="MM", help="Largest blur that counts as sharp [the film's diagonal / 1500]"
+        "--circle-of-confusion",
+        metavar="MM",
+        help="Largest blur that counts as sharp, in mm [the film's diagonal / 1500]",
     ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; infinite and missing values are null")]
@@ -131,7 +133,9 @@ def photo(
             "Exposure time in seconds, 1/125 or 0.008; prints exposure values, too",
         ),
     ] = None,
-    iso: Annotated[float, typer.Option(metavar="ISO", help="Sensitivity, for exposure values")] = 100.0,
+    iso: Annotated[
+        float, typer.Option(metavar="ISO", help="Sensitivity as an ISO number, for exposure values")
+    ] = 100.0,
     file: lens_options.File,
     as_json: AsJson = False,
     quiet: options.Quiet = False,
@@ -238,7 +242,7 @@ def gallery(
     names: lens_options.LensNames = None,
     *,
     output: Annotated[Path, options.output("A .png, .jpg, .tif, .webp, .svg or .pdf file")] = Path("lenses.png"),
-    columns: Annotated[int, typer.Option(metavar="N", help="Drawings side by side", min=1, max=50)] = 6,
+    columns: Annotated[int, typer.Option(metavar="N", help="Number of drawings in a row", min=1, max=50)] = 6,
     theme: lens_options.ThemeName = "light",
     file: lens_options.File,
     quiet: options.Quiet = False,

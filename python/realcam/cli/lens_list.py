@@ -42,7 +42,10 @@ def list_lenses(
     focal_length: Annotated[
         str | None,
         typer.Option(
-            "--focal-length", "--focal", metavar="MM", help="Focal length, 50 or 35-70; zoom lenses must include it"
+            "--focal-length",
+            "--focal",
+            metavar="MM",
+            help="Focal length or range in mm, 50 or 35-70; a zoom lens must include it",
         ),
     ] = None,
     f_number: Annotated[str | None, typer.Option(metavar="N", help="Largest f-number, or a range: 1.4-2.8")] = None,

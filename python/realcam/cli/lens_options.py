@@ -76,7 +76,8 @@ class File:
     pbrt_thickness: Annotated[
         str | None,
         typer.Option(
-            help="Whether a thickness in a .dat file lies after or before the surface of its row [by the first row]",
+            help="Whether a thickness in a .dat file lies after or before the surface of its row [detected from "
+            "the first row]",
             metavar="WHERE",
         ),
     ] = None
@@ -145,7 +146,7 @@ def add_to_lens_path(folders: Sequence[str] | None) -> None:
     """Inserts folders in front of those of REALCAM_LENS_PATH. Raises InputError if one does not exist."""
     for folder in folders or ():
         if not Path(folder).is_dir():
-            raise InputError(f"--lens-path: {folder} is no folder")
+            raise InputError(f"--lens-path: {folder} is not a folder")
     previous = os.environ.get("REALCAM_LENS_PATH")
     if folders:
         os.environ["REALCAM_LENS_PATH"] = ":".join([*folders, *([previous] if previous else [])])

@@ -38,7 +38,7 @@ def register(app: typer.Typer) -> None:
 
 
 def plot(
-    kind: Annotated[str, typer.Argument(help="Kind of plot, one of those above", metavar="KIND")],
+    kind: Annotated[str, typer.Argument(help="Kind of plot, one of the above", metavar="KIND")],
     name: Annotated[str | None, lens_options.lens_argument(lens_options.LENS_HELP)] = None,
     *,
     output: Annotated[
@@ -125,7 +125,7 @@ def report(
     wavelengths: Wavelengths = None,
     object_distance: ObjectDistance = None,
     theme: Annotated[
-        str | None, typer.Option(metavar="NAME", help="light or dark [light; of .html as the browser is set]")
+        str | None, typer.Option(metavar="NAME", help="Colour theme: light or dark [light; the browser's for .html]")
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:

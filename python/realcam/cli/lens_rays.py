@@ -21,14 +21,14 @@ def rays(
     *,
     output: Annotated[Path, options.output("The .npz file to write")],
     rings: lens_options.Rings,
-    count: Annotated[int, typer.Option("--rays", metavar="N", help="Number of rays, blocked ones among them")] = 20000,
+    count: Annotated[int, typer.Option("--rays", metavar="N", help="Number of rays, including blocked ones")] = 20000,
     wavelengths: Annotated[
         Sequence[float] | None, lens_options.wavelengths_option("Wavelengths of the rays [the design wavelength]")
     ] = None,
     file: lens_options.File,
     quiet: options.Quiet = False,
 ) -> None:
-    """Write rays behind and before a lens, from which lens fit makes a lens without its surfaces."""
+    """Write pairs of rays behind and in front of a lens, to which `realcam lens fit` fits a lens without surfaces."""
     from ..ray_pairs import save_rays
 
     lens = rings.set(file.lens(name))
@@ -43,7 +43,7 @@ def fit(
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
-    """Fit a lens to rays before and behind it, and print its errors on rays to which nothing was fitted."""
+    """Fit a lens to pairs of rays in front of and behind it, and print its errors on rays that the fit has not used."""
     from ..ray_pairs import RayPairLens
 
     record_input(rays)

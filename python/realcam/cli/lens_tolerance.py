@@ -24,9 +24,11 @@ def tolerance(
     grade: Annotated[
         str, typer.Option(metavar="NAME", help="Grade of all tolerances: commercial, precision or high")
     ] = "commercial",
-    output: Annotated[Path | None, options.output("File for a report, .html")] = None,
+    output: Annotated[Path | None, options.output("Report to write, .html")] = None,
     copies: Annotated[int, typer.Option(metavar="N", help="Number of copies of the lens with random errors")] = 1000,
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed; the same seed makes the same copies")] = 0,
+    seed: Annotated[
+        int, typer.Option(metavar="N", help="Seed of the random numbers; the same seed makes the same copies")
+    ] = 0,
     compensate: Annotated[
         str,
         typer.Option(metavar="WHAT", help="Compensators: refocus, film_tilt, both separated by a comma, or nothing"),
@@ -35,7 +37,10 @@ def tolerance(
         str, typer.Option(metavar="NAME", help="Distribution of errors: uniform, or normal with the limit at 2 sigma")
     ] = "uniform",
     frequency: Annotated[
-        float | None, typer.Option(metavar="PER_MM", help="Spatial frequency of the MTF [20 on a film of 36 x 24 mm]")
+        float | None,
+        typer.Option(
+            metavar="PER_MM", help="Spatial frequency of the MTF in periods per mm [20 on a film of 36 x 24 mm]"
+        ),
     ] = None,
     at_least: Annotated[
         float | None,
@@ -45,7 +50,9 @@ def tolerance(
     ] = None,
     rings: lens_options.Rings,
     file: lens_options.File,
-    theme: Annotated[str | None, typer.Option(metavar="NAME", help="light or dark [as the browser is set]")] = None,
+    theme: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Colour theme: light or dark [the browser's]")
+    ] = None,
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:

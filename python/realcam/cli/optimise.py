@@ -32,18 +32,21 @@ VARIABLE_GROUPS = ("radii", "thicknesses", "conics")
 class Bounds:
     """Options for the bounds of the variables, in mm."""
 
-    least_radius: Annotated[float, typer.Option(metavar="MM", help="Smallest radius", min=0)] = 0.0
-    least_thickness: Annotated[float, typer.Option(metavar="MM", help="Smallest air thickness")] = 0.1
+    least_radius: Annotated[float, typer.Option(metavar="MM", help="Smallest radius in mm", min=0)] = 0.0
+    least_thickness: Annotated[float, typer.Option(metavar="MM", help="Smallest air thickness in mm")] = 0.1
     least_glass: Annotated[
-        float, typer.Option(metavar="MM", help="Smallest glass thickness, or that of the input lens if it is smaller")
+        float,
+        typer.Option(metavar="MM", help="Smallest glass thickness in mm, or that of the input lens if it is smaller"),
     ] = 1.0
     most_thickness: Annotated[
-        float | None, typer.Option(metavar="MM", help="Largest thickness [three times the largest of the input lens]")
+        float | None,
+        typer.Option(metavar="MM", help="Largest thickness in mm [three times the largest of the input lens]"),
     ] = None
     least_edge: Annotated[
         float | None,
         typer.Option(
-            metavar="MM", help="Smallest edge thickness of glass [0.5, or that of the input lens if it is smaller]"
+            metavar="MM",
+            help="Smallest edge thickness of glass in mm [0.5, or that of the input lens if it is smaller]",
         ),
     ] = None
 
@@ -78,14 +81,18 @@ def optimise(
         ),
     ] = None,
     focal_length: Annotated[
-        float | None, typer.Option(metavar="MM", help="Target focal length [that of the input lens]")
+        float | None, typer.Option(metavar="MM", help="Target focal length in mm [that of the input lens]")
     ] = None,
     bounds: Bounds,
     most_distortion: Annotated[
         float | None,
-        typer.Option(metavar="PERCENT", help="Largest distortion at the outermost field, of either sign", min=0),
+        typer.Option(
+            metavar="PERCENT",
+            help="Largest distortion in percent at the outermost field, of either sign [no limit]",
+            min=0,
+        ),
     ] = None,
-    glasses: Annotated[bool, typer.Option("--glasses", help="Search the catalogue for better glasses, too")] = False,
+    glasses: Annotated[bool, typer.Option("--glasses", help="Also search the catalogue for better glasses")] = False,
     global_looks: Annotated[
         int,
         typer.Option("--global", metavar="N", help="Number of lenses sampled over the bounds before the search", min=0),

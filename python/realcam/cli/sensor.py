@@ -90,7 +90,9 @@ def expose(
             autocompletion=completion_of("SENSOR"),
         ),
     ] = "ideal",
-    iso: Annotated[float | None, typer.Option(metavar="ISO", help="Sensitivity [the picture's]")] = None,
+    iso: Annotated[
+        float | None, typer.Option(metavar="ISO", help="Sensitivity as an ISO number [the picture's]")
+    ] = None,
     seed: Annotated[
         int, typer.Option(metavar="N", help="Seed of the noise of this exposure", min=0, max=2**32 - 1)
     ] = 0,
@@ -177,7 +179,7 @@ def _film_of(path: Path, entries: dict[str, str], pixels: np.ndarray) -> Film:
     try:
         width, height = (float(word) for word in size)
     except ValueError:
-        raise InputError(f"{path}: does not say how large its film is; expected an .exr of `realcam render`") from None
+        raise InputError(f"{path}: does not state the size of its film; expected an .exr of `realcam render`") from None
     return Film(width, height, (pixels.shape[1], pixels.shape[0]))
 
 

@@ -32,7 +32,7 @@ def check_usage(command: Any) -> None:
             values, _, order = command.make_parser(context).parse_args(args=list(words))
             for parameter in order:
                 if order.count(parameter) > 1 and not parameter.multiple and not getattr(parameter, "is_flag", True):
-                    raise UsageError(f"{max(parameter.opts, key=len)} is given more than once")
+                    raise UsageError(f"{max(parameter.opts, key=len)} is specified more than once")
             return parse(context, words)
         except UsageError as error:
             error.ctx = error.ctx or context

@@ -41,11 +41,11 @@ def view(
         from ..viewer.server.server import ServerSettings, check_port, serve
         from ..viewer.shot_source import ShotSource
     except ImportError as error:
-        raise InputError(f"the lens bench needs {error.name}; pip install realcam[view] brings it") from None
+        raise InputError(f"the lens bench needs {error.name}; pip install realcam[view] installs it") from None
     if not is_local(host) and not allow_network:
-        raise InputError(f"--host {host}: other machines reach this address; --allow-network allows that")
+        raise InputError(f"--host {host}: other machines can reach this address; --allow-network permits this")
     if quiet and not (is_local(host) or token):
-        raise InputError("--quiet hides the token that is made for other machines: name one with --token")
+        raise InputError("--quiet hides the token that --allow-network creates; specify one with --token")
     check_port(host, port)  # before reading the scene, which may take long
     path = scenes_folder() / "demo.toml" if shot is None else shot
     source, opened = ShotSource.opened(path, device, words_of(changes))

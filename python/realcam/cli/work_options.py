@@ -47,7 +47,9 @@ class FarmOptions:
     openjd: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Also write a template of Open Job Description, .json")
     ] = None
-    tasks: Annotated[int, typer.Option(metavar="N", help="Processes that these files start", min=1, max=100000)] = 8
+    tasks: Annotated[
+        int, typer.Option(metavar="N", help="Number of processes that these files start", min=1, max=100000)
+    ] = 8
 
 
 def farm_files(farm: FarmOptions, work: FarmWork) -> dict[Path, bytes]:

@@ -36,5 +36,5 @@ def codes_of(png: bytes) -> np.ndarray:
         codes = opened.read_image(oiio.UINT8)
         opened.close()
     if codes is None:
-        raise ValueError("this is no whole picture")
+        raise ValueError("this is not a complete picture")
     return codes[..., 0] if codes.shape[2] == 1 else codes

@@ -170,7 +170,7 @@ class Recipe:
         try:
             text = Path(path).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
-            raise InputError(f"{name}: this cannot be read: {getattr(error, 'strerror', None) or error}") from None
+            raise InputError(f"{name}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
         values, lines = _read_toml(text, name)
         if values.pop("format", None) != 1:
             raise InputError(f"{name}: expected format = 1, the version of this description")
@@ -179,7 +179,7 @@ class Recipe:
                 raise InputError(f'{name}:{lines[key]}: unknown key "{key:.40}"{_did_you_mean(key, list(_KINDS))}')
         if values.get("lenses") == []:
             raise InputError(
-                f"{name}:{lines['lenses']}: lenses must name at least one; without the key there are defaults"
+                f"{name}:{lines['lenses']}: lenses must name at least one lens; default lenses need no key"
             )
         # Absolute, because the processes of an executor may have another current folder.
         folder = Path(path).parent.absolute()

@@ -64,7 +64,7 @@ def _model(path: str) -> tuple[Scene, Array]:
     low, high = np.array(scene.bounds_m)
     size = float((high - low).max())
     if not 0 < size < np.inf:
-        raise InputError(f"{path}: this model has no size")
+        raise InputError(f"{path}: the model has no size")
     matrix = np.diag([1 / size, 1 / size, 1 / size, 1.0])
     matrix[:3, 3] = -np.array([(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2]) / size
     return scene, matrix

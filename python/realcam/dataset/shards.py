@@ -51,18 +51,22 @@ class DatasetFolder:
         except OSError as error:
             raise InputError(f"{error.filename}: {error.strerror}; choose a folder that can be written to") from None
         except ValueError as error:
-            raise InputError(one_line(f"{file}: this is damaged ({error}); choose another folder")) from None
+            raise InputError(one_line(f"{file}: is damaged ({error}); choose another folder")) from None
         if foreign:
-            raise InputError(f"{foreign}: is not of this data set, as {RECIPE_FILE} is missing; choose another folder")
+            raise InputError(
+                f"{foreign}: does not belong to this data set, as {RECIPE_FILE} is missing; choose another folder"
+            )
         previous = about if previous is None else previous
         if not isinstance(previous, dict) or "realcam" not in previous or type(previous.get("count")) is not int:
-            raise InputError(f"{file}: is not of a data set of realcam; choose another folder")
+            raise InputError(f"{file}: does not belong to a data set of realcam; choose another folder")
         changed = [key for key in about if key != "count" and previous.get(key) != about[key]]
         if changed and folder._first_file(*_PICTURES):  # a recipe without pictures yet may be corrected
-            raise InputError(f"{folder.path}: made by another recipe ({', '.join(changed)}); choose another folder")
+            raise InputError(
+                f"{folder.path}: was made with another recipe ({', '.join(changed)}); choose another folder"
+            )
         if previous["count"] > recipe.count:
             raise InputError(
-                f"{folder.path}: the data set was made with {previous['count']} pictures; the count may not be smaller"
+                f"{folder.path}: the data set was made with {previous['count']} pictures; the count must not be smaller"
             )
         make_folder(folder.path / "samples")
         if previous["count"] < recipe.count:
@@ -180,7 +184,7 @@ class DatasetFolder:
         except (ValueError, TypeError, AttributeError) as error:
             if isinstance(error, InputError) and str(error).startswith(str(file)):
                 raise
-            raise InputError(f"{file}: this is damaged; choose another folder") from None
+            raise InputError(f"{file}: is damaged; choose another folder") from None
 
     def _numbers_in(self, shard: int) -> set[int]:
         """Returns the numbers of the samples in a shard; none if it does not exist."""
@@ -197,7 +201,7 @@ class DatasetFolder:
                 if number not in samples:
                     samples |= self._samples_of(self.sample_path(number), [number])
                 if number not in samples:
-                    raise InputError(f"{self.sample_path(number)}: this is empty; removed, it is made again")
+                    raise InputError(f"{self.sample_path(number)}: is empty; remove it, and it is made again")
                 _add(tar, number, samples.pop(number))
         return content.getvalue()
 
@@ -245,7 +249,7 @@ def read_samples(path: Path, wanted: Collection[str] | None = None) -> Iterator[
                 content = tar.extractfile(entry) if wanted is None or suffix in wanted else None
                 files[suffix] = content.read() if content else b""
     except (tarfile.TarError, OSError, EOFError) as error:
-        raise InputError(one_line(f"{path}: this cannot be read ({error}); removed, it is made again")) from None
+        raise InputError(one_line(f"{path}: cannot be read ({error}); remove it, and it is made again")) from None
     if files:
         yield key, files
 

@@ -187,7 +187,7 @@ class JobFolder:
         if counts is not None:
             is_valid &= counts.shape == (height, width) and counts.dtype == np.uint32 and counts.max() == round_.spp
         if not is_valid or (counts is None) != (not known or round_.is_of_layers):
-            raise InputError(f"{path}: this is not round {len(known)}")
+            raise InputError(f"{path}: is not the file of round {len(known)}")
         return round_
 
     def _round_path(self, shot: int, number: int) -> Path:

@@ -222,8 +222,8 @@ class RayPairLens:
         ):
             if asked is not None and not np.isclose(asked, measured, rtol=1e-3):
                 raise InputError(
-                    f"the rays of this lens were measured at the {what} {measured:.4g}; {asked:.4g} needs rays of its "
-                    "own"
+                    f"the rays of this lens were measured at the {what} {measured:.4g}; {asked:.4g} needs other "
+                    "measurements"
                 )
         if "model" in settings or "geometry" in settings:
             raise InputError('a camera with ray pairs has the model "polynomial", and no geometry of a calibration')

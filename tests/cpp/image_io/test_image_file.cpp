@@ -151,7 +151,7 @@ TEST_CASE("Environments are linear light") {
         INFO(wrong);
         CHECK_THROWS_WITH_AS(
             read_environment(path),
-            doctest::Contains((std::string("wrong.exr: 2 pixels are ") + (wrong == -1.0f ? "negative" : "no light") +
+            doctest::Contains((std::string("wrong.exr: 2 pixels are ") + (wrong == -1.0f ? "negative" : "invalid") +
                                ", the first in row 0, column 1: (0, ")
                                   .c_str()),
             ImageFileError);

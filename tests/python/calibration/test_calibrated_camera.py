@@ -194,7 +194,9 @@ def test_measured_vignetting_replaces_that_of_the_lens() -> None:
     with pytest.raises(rc.InputError, match=r"times as bright as lens .* degrees from the axis"):
         made_from.camera(lens, vignetting=rc.Vignetting(lambda pixels, size: 1 / cosine(pixels, size) ** 9))
     dark = rc.Lens.load("landscape-100mm").stopped_down(64)  # sees 30 degrees to the side
-    with pytest.raises(rc.InputError, match=r"has light where lens landscape-100mm brings none, at pixel .* degrees"):
+    with pytest.raises(
+        rc.InputError, match=r"has light where lens landscape-100mm transmits none, at pixel .* degrees"
+    ):
         calibration(150.0).camera(dark, vignetting=rc.Vignetting(cosine))
 
 

@@ -96,7 +96,7 @@ def test_a_map_of_another_program_needs_its_pinhole_camera(tmp_path: Path) -> No
     found = rc.Calibration.load(tmp_path / "remap.npz", camera_matrix=matrix)
     assert found.project([[0.1, -0.2, 1]])[0][0] == pytest.approx([55, 18], abs=1e-9)
     np.savez(tmp_path / "bad.npz", map_x=np.array([object()], dtype=object))
-    with pytest.raises(rc.CalibrationFileError, match=r"is no .npz of numbers"):
+    with pytest.raises(rc.CalibrationFileError, match=r"is not an .npz file of numbers"):
         rc.Calibration.load(tmp_path / "bad.npz")
 
 

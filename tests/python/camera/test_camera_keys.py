@@ -205,7 +205,7 @@ def test_blades_and_film_have_keys() -> None:
             "key 0 of the camera: f/2.4 is faster than the lens at 100 mm, which opens to f/2.9",
         ),
         (lambda: Key(0, iso=1, interpolation="bouncy"), 'interpolation: "bouncy": expected linear, smooth or step'),
-        (lambda: shot_of(Key(1, iso=1), Key(1, iso=2)), "key 1 of the camera: the times must rise"),
+        (lambda: shot_of(Key(1, iso=1), Key(1, iso=2)), "key 1 of the camera: the times must be strictly increasing"),
         (lambda: shot_of(Key(0, f_number=1.2)), "key 0 of the camera: f/1.2 is faster than lens"),
         (lambda: shot_of(Key(0, focus_m=0.02)), "key 0 of the camera: cannot focus at 0.02 m"),
         (lambda: shot_of(Key(0, focal_length_mm=50)), "key 0 of the camera: .* has no focal lengths between"),
@@ -314,7 +314,7 @@ def test_an_f_number_of_the_file_is_that_of_all_focal_lengths(folder: Path) -> N
 @pytest.mark.parametrize(
     ("text", "line", "expected"),
     [
-        ("[[key]]\ntime_s = 1\niso = 100\n[[key]]\ntime_s = 1\niso = 200\n", 12, "the times must rise"),
+        ("[[key]]\ntime_s = 1\niso = 100\n[[key]]\ntime_s = 1\niso = 200\n", 12, "times must be strictly increasing"),
         ("[[key]]\ntime_s = 1\nfocus = 2\n", 10, 'unknown key "focus" (did you mean "focus_m"?)'),
         ("[[key]]\niso = 100\n", 8, '"time_s" is missing: a number'),
         ("[[key]]\ntime_s = 1\n", 9, "a key of the camera has no value"),

@@ -334,7 +334,7 @@ def test_what_makes_no_picture_is_an_error() -> None:
         (camera.replace(model="thin"), "dispersion", None, "dispersion: the camera's model must be full"),
         (camera, "dispersion", "D100", "illuminant: .*is unknown"),
         (camera, "dispersion", 900.0, "illuminant: .*between 380 and 780"),
-        (camera, "dispersion", [(500, 1.0), (480, 1.0)], "illuminant: .*must rise"),
+        (camera, "dispersion", [(500, 1.0), (480, 1.0)], "illuminant: .*must be strictly increasing"),
         (camera, "dispersion", [(500, 1.0)], "illuminant: .*at least two points"),
         (camera, "dispersion", [(546, 1.0), (560, 1.0)], "illuminant: .*too little"),
         (short, "dispersion", None, "the glass of surface 1 .*is known from 486.1 to 656.3 nm; 380"),

@@ -135,7 +135,7 @@ def test_settings_files_and_metadata(tmp_path: Path) -> None:
         (1.5, "at most 1"),
         (float("nan"), "at most 1"),
         ("500:0.5", "at least two points"),
-        ([(500, 0.5), (400, 0.5)], "must rise"),
+        ([(500, 0.5), (400, 0.5)], "must be strictly increasing"),
         ([(500, 0.5), (600, 1.5)], "between 0 and 1"),
         ([(500, 0.0), (600, 0.0)], "no visible light passes"),
         ({}, "filter"),

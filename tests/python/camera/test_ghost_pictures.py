@@ -327,7 +327,7 @@ def test_tents_keep_the_light_of_ghosts_and_stars(effect: str, device: str) -> N
 )
 def test_a_share_that_is_none_is_refused(effect: str) -> None:
     camera = rc.Camera(rc.Lens.load("double-gauss-50mm"), film=FILM)
-    with pytest.raises(rc.InputError, match=f'"{effect}" is no effect'):
+    with pytest.raises(rc.InputError, match=f'"{effect}" is not an effect'):
         rc.render(scenes.sky(), camera, spp=1, effects=effect)
 
 

@@ -299,7 +299,7 @@ def test_motion_is_a_part_of_the_values() -> None:
     ("transforms", "times", "required"),
     [
         ([np.eye(4)], [0, 1], "as many transforms as times"),
-        ([np.eye(4)] * 2, [1, 1], "the times must rise"),
+        ([np.eye(4)] * 2, [1, 1], "the times must be strictly increasing"),
         ([np.eye(4)] * 2, [0, np.nan], "within 1e9 s"),
         ([np.eye(4), np.diag([1, 1, 0, 1])], [0, 1], r'instance 0 \("box"\): key 1 of its motion: .* flat'),
         ([np.eye(4), np.diag([1, 1, -1, 1])], [0, 1], "mirror"),
@@ -312,7 +312,10 @@ def test_what_is_no_motion_is_refused(transforms: list[np.ndarray], times: list[
 
 def test_what_is_no_motion_of_a_camera_is_refused() -> None:
     for words, message in (
-        ({"motion": [(0, (0, 0, 0), (0, 0, -1))] * 2}, "key 1 of the camera's motion: the times must rise"),
+        (
+            {"motion": [(0, (0, 0, 0), (0, 0, -1))] * 2},
+            "key 1 of the camera's motion: the times must be strictly increasing",
+        ),
         ({"motion": [(0, (0, 0, 0), (0, 0, 0))]}, "key 0 of the camera's motion: the camera must look"),
         ({"readout_time_s": -1}, "readout"),
         ({"shutter_opens_s": np.inf}, "shutter opens"),

@@ -115,7 +115,7 @@ def test_a_curve_is_read_from_a_table(tmp_path: Path) -> None:
         ("time_s,x_deg\n0,1\n1\n", 3, "has 1 numbers; the columns are 2"),
         ("time_s,x_deg\n0,1\n1,one\n", 3, '"one" is not a finite number'),
         ("time_s,x_deg\n0,nan\n", 2, '"nan" is not a finite number'),
-        ("time_s,x_deg\n1,0\n1,0\n", 3, "the times must rise"),
+        ("time_s,x_deg\n1,0\n1,0\n", 3, "the times must be strictly increasing"),
         ("time_s,x_deg\n1,100\n", 2, "angles must lie within 90 degrees"),
         ("", None, "has no curve"),
         ("time_s\n", None, "has no curve"),
@@ -137,7 +137,7 @@ def test_mistakes_in_a_table_are_named(tmp_path: Path, text: str, line: int | No
         ({"rms_mm": float("nan")}, "a length from 0 to 1e6 mm"),
         ({"corner_hz": 0}, "a frequency up to 1e4 Hz"),
         ({"seed": -1}, "seed"),
-        ({"curve": [(1, (0, 0, 0), (0, 0, 0))] * 2}, "key 1 of the shake: the times must rise"),
+        ({"curve": [(1, (0, 0, 0), (0, 0, 0))] * 2}, "key 1 of the shake: the times must be strictly increasing"),
     ],
 )
 def test_shakes_that_are_none_are_refused(words: dict[str, object], expected: str) -> None:

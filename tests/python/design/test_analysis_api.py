@@ -136,7 +136,7 @@ TELECENTRIC = rc.Lens(
 @pytest.mark.parametrize(
     ("call", "required"),
     [
-        (lambda: LENS.wavefront(60.0), "no ray at a field angle of 60 deg reaches the middle of the stop"),
+        (lambda: LENS.wavefront(60.0), "no ray at a field angle of 60 deg reaches the centre of the stop"),
         (lambda: LENS.spot(30.0), "none of 127 rays at a field angle of 30 deg passes lens"),
         (lambda: LENS.spot(200.0), "field angle is 200 deg; expected less than 180 deg"),
         (lambda: LENS.spot(95.0, object_distance_m=2.0), "less than 90 deg"),

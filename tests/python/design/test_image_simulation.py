@@ -272,7 +272,7 @@ def test_what_cannot_be_is_said(gauss: rc.Lens, words: dict[str, object], messag
 
 
 def test_lenses_without_light_are_told(gauss: rc.Lens) -> None:
-    with pytest.raises(rc.InputError, match=r"no light of lens .* reaches the middle of the film"):
+    with pytest.raises(rc.InputError, match=r"no light through lens .* reaches the centre of the film"):
         rc.image_simulation(gauss.shifted(y_mm=60), np.ones((20, 30, 3), np.float32))
 
 

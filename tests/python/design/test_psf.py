@@ -231,7 +231,7 @@ def test_hard_lenses_have_psfs() -> None:
         ({"rays": 10**12}, "at most 16777216"),
         ({"rays": 10**12, "method": "geometric"}, "at most 16777216"),
         ({"rays": 50}, "50 rays cannot follow the wavefront over the array: at least"),
-        ({"wavelength_nm": []}, "no wavelength is given"),
+        ({"wavelength_nm": []}, "psf: expected at least one wavelength"),
         ({"wavelength_nm": [500, 600], "weights": [1]}, "1 weights for 2 wavelengths"),
         ({"wavelength_nm": [500, 600], "weights": [1, 0]}, "weights must be positive"),
         ({"wavelength_nm": 50}, "between 100 and 20000 nm"),

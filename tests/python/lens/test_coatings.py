@@ -245,7 +245,10 @@ def test_a_stated_reflectance_holds_everywhere() -> None:
         (lambda: rc.CoatingLayer(0.5, thickness_nm=1), "index of layer 1 must lie between 1 and 10; it is 0.5"),
         (lambda: rc.CoatingLayer(-1.5 + 0j, thickness_nm=1), "needs n above 0"),
         (lambda: rc.CoatingLayer(1.5 - 1j, thickness_nm=1), "k > 0 absorbs"),
-        (lambda: rc.CoatingLayer([(500, 1, 1), (400, 1, 1)], thickness_nm=1), "wavelengths of layer 1 must rise"),
+        (
+            lambda: rc.CoatingLayer([(500, 1, 1), (400, 1, 1)], thickness_nm=1),
+            "wavelengths of layer 1 must be strictly increasing",
+        ),
         (lambda: rc.CoatingLayer("MgF3", thickness_nm=1), 'unknown glass "MgF3"'),
         (lambda: rc.CoatingLayer(None, thickness_nm=1), "a coating's material must be"),
         (lambda: rc.Coating([layer(1.38, 1)] * 1001), "has 1001 layers; at most 1000"),

@@ -178,6 +178,6 @@ def test_tilt_and_shift_change_no_first_order_data() -> None:
 def test_without_light_there_are_no_data() -> None:
     base = rc.Lens.load("double-gauss-50mm")
     away = base.with_surface(3, tilt_deg=(90, 0, 0))
-    with pytest.raises(rc.InputError, match="no ray is found from the middle of the film"):
+    with pytest.raises(rc.InputError, match="no ray is found from the centre of the film"):
         away.first_order()
     assert "tilted" in repr(away)  # which says what is known

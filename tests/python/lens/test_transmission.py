@@ -379,7 +379,11 @@ clear_semi_diameter_mm = 5.0
             r':19: "metal_label" is for a "metal"',
         ),
         ("coating", 'metal = "sliver"', r':18: unknown metal .*did you mean "silver"'),
-        ("coating", "metal = [[500, 1, 1], [400, 1, 1]]", r":17: the wavelengths of the metal must rise"),
+        (
+            "coating",
+            "metal = [[500, 1, 1], [400, 1, 1]]",
+            r":17: the wavelengths of the metal must be strictly increasing",
+        ),
         ("coating", 'metal = [["a", 1, 1]]', r":18: each number of a point must be a finite number"),
         ("layer", "material = 1.4", r':18: a layer needs exactly one of "thickness_nm"'),
         ("layer", "material = 1.4, thickness_nm = nan", r':18: "thickness_nm" must be a finite number'),

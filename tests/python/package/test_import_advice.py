@@ -56,9 +56,9 @@ def test_a_package_without_its_extension_says_so(tmp_path: Path, words: list[str
 @pytest.mark.parametrize(
     ("missing", "words", "expected"),
     [
-        *((name, ["view"], f"the lens bench needs {name}; pip install realcam[view] brings it") for name in VIEW),
+        *((name, ["view"], f"the lens bench needs {name}; pip install realcam[view] installs it") for name in VIEW),
         ("OpenImageIO", ["render", "scene.obj", "--lens", "double-gauss-50mm", "--spp", "1", "-o", "a.png"],
-         "picture files need the package OpenImageIO; pip install OpenImageIO brings it"),
+         "picture files need the package OpenImageIO; pip install OpenImageIO installs it"),
     ],
 )  # fmt: skip
 def test_a_missing_package_is_told_with_what_brings_it(

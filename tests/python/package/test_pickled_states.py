@@ -112,7 +112,7 @@ def test_a_glass_is_made_as_others_are() -> None:
     state = arguments_of(table)[3]
     assert "a glass table needs at least one" in refused(table, with_item(state, 2, state[2][:0]))
     twice = np.concatenate([state[2], state[2]])
-    assert "gives a wavelength twice" in refused(table, with_item(state, 2, twice))
+    assert "contains a wavelength twice" in refused(table, with_item(state, 2, twice))
 
 
 def test_what_is_shared_is_of_one_type() -> None:
@@ -178,7 +178,7 @@ def test_texts_are_texts() -> None:
 def test_what_names_no_value_is_refused() -> None:
     state = arguments_of(rc.Film())[3]
     for kind in ("Session", "_restored", "no such thing", "devices", 3, None, b"Film"):
-        with pytest.raises(rc.InputError, match="pickles no such object"):
+        with pytest.raises(rc.InputError, match="cannot restore this object"):
             pickling.restored(kind, pickling.FORMAT, "0.1", state)  # type: ignore[arg-type]
     for number in (None, "1", np.zeros(3)):
         with pytest.raises(rc.InputError, match="in format"):

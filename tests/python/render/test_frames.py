@@ -183,7 +183,7 @@ def test_the_executable_says_what_makes_films(folder: Path) -> None:
     [
         ("render -oa.png --fps 0 --frames 1-2", "--fps must be more than 0 frames per second"),
         ("render -onowhere/a.png --frames 1-2", "nowhere"),
-        ("render -oa.mp4 -oa.mp4 --frames 1-2", '"a.mp4" is given twice'),
+        ("render -oa.mp4 -oa.mp4 --frames 1-2", '"a.mp4" is specified twice'),
         ("render -oa.mp4", "--frames is missing"),
         ("render -onowhere/a.mp4 --frames 1-2", "nowhere"),
         *(

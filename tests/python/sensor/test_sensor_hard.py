@@ -226,7 +226,7 @@ def test_what_is_not_installed_is_told_in_one_line(monkeypatch: pytest.MonkeyPat
     monkeypatch.setitem(__import__("sys").modules, "tifffile", None)
     monkeypatch.setitem(__import__("sys").modules, "colour_demosaicing.bayer", None)
     for use in (lambda: raw.save(tmp_path / "x.dng"), raw.developed):
-        with pytest.raises(rc.InputError, match=r"pip install realcam\[raw\] brings it") as error:
+        with pytest.raises(rc.InputError, match=r"pip install realcam\[raw\] installs it") as error:
             use()
         assert "\n" not in str(error.value)
     assert not list(tmp_path.iterdir())

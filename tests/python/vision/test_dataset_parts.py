@@ -121,7 +121,7 @@ def test_a_shard_that_lost_its_end_is_made_whole(made: dict[str, bytes], tmp_pat
     make(RECIPE, tmp_path, part=(2, 2), device="cpu")
     assert contents(tmp_path) == made
     path.write_bytes(path.read_bytes()[: second - 1000])
-    with pytest.raises(rc.InputError, match=r"shard-000001.tar: .*; removed, it is made again") as error:
+    with pytest.raises(rc.InputError, match=r"shard-000001.tar: .*; remove it, and it is made again") as error:
         make(RECIPE, tmp_path, part=(2, 2), device="cpu")
     assert "\n" not in str(error.value)
 

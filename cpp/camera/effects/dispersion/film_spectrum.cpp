@@ -117,7 +117,7 @@ void balance(std::vector<Piece>& pieces, const Illuminant& illuminant, bool is_f
         const double white = row_sum(sum, row);
         if (!(white > 0.02 * most))
             throw InputError("illuminant: " + illuminant.text().substr(0, 60) + " has too little " +
-                             std::array{"red", "green", "blue"}[row] + " for a film that is to show white as white");
+                             std::array{"red", "green", "blue"}[row] + " for a white balance");
         for (Piece& piece : pieces)
             for (std::size_t column = 0; column < 3; ++column) piece.film[3 * row + column] /= white;
     }

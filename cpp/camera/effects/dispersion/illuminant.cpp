@@ -17,7 +17,7 @@ void check_spectrum(const std::vector<SpectrumPoint>& points, const std::string&
             !(points[i].power < 1e30))
             fail("a table must have wavelengths in nm and values of at least 0");
         if (i > 0 && !(points[i].wavelength_nm > points[i - 1].wavelength_nm))
-            fail("the wavelengths of a table must rise");
+            fail("the wavelengths of a table must be strictly increasing");
     }
 }
 
@@ -65,7 +65,7 @@ Illuminant Illuminant::named(std::string_view name) {
 
 Illuminant Illuminant::line(double wavelength_nm) {
     if (!(wavelength_nm >= kFirstWavelength_nm && wavelength_nm <= kLastWavelength_nm))
-        fail("a line must lie between 380 and 780 nm");
+        fail("a wavelength must lie between 380 and 780 nm");
     Illuminant illuminant;
     illuminant.name_.clear();
     illuminant.points_ = {{wavelength_nm, 1}};

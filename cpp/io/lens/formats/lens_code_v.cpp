@@ -306,7 +306,7 @@ private:
     void read_zoom(const C& c) {
         if (c.size() == 0) lines_.fail("ZOO needs a number of positions, or a parameter that zooming changes");
         if (is_digits(c[0].text)) {
-            if (position_count_ > 0) lines_.fail("the number of zoom positions is given twice");
+            if (position_count_ > 0) lines_.fail("the number of zoom positions is specified twice");
             position_count_ = c.whole(0, "the number of zoom positions", 1, kMaxFileZoomPositions);
             for (int i = 1; i <= position_count_; ++i) p_.zoom_names.push_back(std::to_string(i));
             return;

@@ -99,7 +99,7 @@ def _refuse(calibration: CalibratedPicture, camera: Camera, pixels: Array, gain:
     angle = np.degrees(np.arccos(np.clip(directions[0, 2], -1, 1)))
     where = f"at pixel ({pixel[0]:.0f}, {pixel[1]:.0f}), {angle:.3g} degrees from the axis"
     if np.isinf(gain.max()):
-        raise InputError(f"the measured vignetting has light where lens {camera.lens.name} brings none, {where}")
+        raise InputError(f"the measured vignetting has light where lens {camera.lens.name} transmits none, {where}")
     raise InputError(
         f"the measured vignetting is {gain.max():.3g} times as bright as lens {camera.lens.name} {where}; expected at "
         f"most {LARGEST_GAIN:g}"

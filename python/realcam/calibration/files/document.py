@@ -32,7 +32,7 @@ class Document:
             reason = getattr(error, "strerror", None) or str(error)
             raise CalibrationFileError(f"{os.fspath(path)}: cannot be read: {reason}") from None
         if len(self.content) > LARGEST_FILE:
-            self.fail(f"is larger than {LARGEST_FILE >> 20} MiB, which no calibration is")
+            self.fail(f"is larger than {LARGEST_FILE >> 20} MiB, the limit for calibration files")
         if not self.content.removeprefix(codecs.BOM_UTF8).strip():
             self.fail("is empty")
 
@@ -75,7 +75,7 @@ class Document:
             return self._json()
         if self.syntax == "yaml":
             if len(self.content) > LARGEST_YAML:
-                self.fail(f"is a YAML file larger than {LARGEST_YAML >> 20} MiB, which no calibration is")
+                self.fail(f"is larger than {LARGEST_YAML >> 20} MiB, the limit for YAML files")
             return parsed_yaml(self.text, self.fail)
         return None
 

@@ -116,7 +116,7 @@ def _tables(document: Document) -> dict[str, Array]:
         with np.load(io.BytesIO(document.content), allow_pickle=False) as loaded:
             return {key: loaded[key] for key in loaded.files}
     except (zipfile.BadZipFile, ValueError, OSError, EOFError, KeyError) as error:
-        document.fail(f"is no .npz of numbers: {error!s:.80}".replace("\n", " "))
+        document.fail(f"is not an .npz file of numbers: {error!s:.80}".replace("\n", " "))
 
 
 def _remap_camera(document: Document, options: Options) -> StatedCamera:
