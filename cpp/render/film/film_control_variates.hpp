@@ -132,8 +132,10 @@ struct PixelNeighbourhood {
     }
 };
 
-/// Returns the factor that scales a pixel's irradiance to the pass rate of its neighbours. The result is unbiased,
-/// because the mean over the passing samples is.
+/// Returns the factor that scales a pixel's irradiance to the pass rate of its neighbours. The mean over the passing
+/// samples is unbiased, and the mean rate is that of the pixel where rates change linearly over the film. Their
+/// curvature leaves a bias below the spread that is expected by chance: 0.1% of the light in single pixels of a small,
+/// coarse film at 128 samples, and less with more samples.
 ///
 /// Samples are taken in a pupil outline with a margin, in which one or two in a hundred are lost (Pupil). If more are
 /// lost, the image circle ends there; if the pass rates of the pixels differ by more than chance explains, they have
