@@ -38,6 +38,9 @@ def Camera "Main" {
     assert (camera.film.width_mm, camera.film.height_mm) == pytest.approx((24, 16))
     assert (camera.exposure_time_s, camera.iso) == (0.5, 400)
     assert [name for name, _, _ in shot.scene.cameras] == ["Main"]
+    # Pixels are square, with the aspect ratio of a resolution in place of that of the apertures.
+    film = rc.Shot.load(path, spp=1, resolution=(48, 48)).camera.film
+    assert (film.width_mm, film.height_mm) == pytest.approx((24, 24))
     other = rc.Shot.load(path, spp=1, lens="double-gauss-50mm", f_number=4, iso=100).camera
     assert other.lens.f_number == pytest.approx(4, rel=1e-3)
     assert other.iso == 100
