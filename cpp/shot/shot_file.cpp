@@ -246,9 +246,14 @@ public:
         }
     }
 
-    /// Marks f-number and film size as those of another lens if the stage has no lens, or the shot file another one.
-    void mark(ShotRequest& request) const {
+    /// Gives the stage's film the aspect ratio of a specified resolution; its width stays. Marks f-number and film size
+    /// as those of another lens if the stage has no lens, or the shot file another one.
+    void adapt(ShotRequest& request) const {
         const auto has = [&](const char* key) { return std::ranges::count(added_, key) > 0; };
+        if (has("film_mm") && request.resolution) {
+            const auto [columns, rows] = *request.resolution;
+            (*request.film_mm)[1] = (*request.film_mm)[0] * rows / columns;
+        }
         if (has("lens")) return;
         request.f_number_is_of_other_lens |= has("f_number");
         request.film_is_of_other_lens |= has("film_mm");
@@ -279,7 +284,7 @@ ShotRequest parse(std::string_view text, const std::string& path, const ShotChan
     }
     ShotRequest request = ShotReader(table, path, changed).read();
     if (!scene.empty()) request.scene = scene;
-    if (stage_settings) stage_settings->mark(request);
+    if (stage_settings) stage_settings->adapt(request);
     return request;
 }
 

@@ -13,8 +13,12 @@ from . import options
 from .grouped_options import grouped
 from .shot_options import shot_options, words_of
 
-# Only the camera's options: a shot saved by the bench contains them all.
-ShotOptions = shot_options("ShotOptions", panels=("Camera",))
+# A shot saved by the bench contains all of these options.
+ShotOptions = shot_options(
+    "ShotOptions",
+    panels=("Camera", "Scene"),
+    also=("ocio", "display", "view", "environment_color_space", "texture_color_space"),
+)
 
 
 @grouped

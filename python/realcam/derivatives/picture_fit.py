@@ -14,6 +14,7 @@ Doubles = NDArray[np.float64]
 
 LONGEST = 2.0  # step, in units of the values' scale
 SHORTEST = 0.1  # step, in standard deviations
+LEAST_INFORMATION = 1e-12  # along an axis, of the values in units of their scale
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,7 @@ class PictureFit:
 
     values: (P,). covariance: (P, P), of the values, from the noise of the pictures and the prior: the inverse of the
     information matrix. Without a prior it is the Cramer-Rao bound. It does not contain the noise of renderings.
+    Standard deviations along axes of which neither pictures nor prior say anything are 1e6 of the scale.
     chi_square: mean square of the residuals of the finest level, in units of their noise. evaluations: number of
     rendered sets of pictures.
     """
@@ -73,18 +75,30 @@ def fit_pictures(
 
     The information matrix is the product of two independent estimates of the derivatives, because the noise of one,
     squared, would be taken for information (which is why scipy's least_squares is not used).
-    Raises InputError.
+    Raises InputError, also for pictures or derivatives of other shapes, and with values that are not finite.
     """
     wanted, spread = np.asarray(observed, float), np.asarray(variance, float)
     units, values = np.asarray(scale, float), np.asarray(start, float)
     if wanted.ndim != 4 or spread.shape != wanted.shape or not (spread > 0).all():
         raise InputError("observed and variance must be arrays (K, H, W, C) of one shape, and variances positive")
+    _finite("observed", wanted, wanted.shape)
     if units.shape != values.shape or values.ndim != 1 or not (units > 0).all():
         raise InputError("start and scale must be (P,), and scales positive")
-    if not blocks or any(wanted.shape[1] % block or wanted.shape[2] % block for block in blocks):
-        raise InputError(f"blocks must divide pictures of {wanted.shape[2]} x {wanted.shape[1]} pixels; found {blocks}")
-    means, deviations = (values, np.inf) if prior is None else (np.asarray(part, float) for part in prior)
-    of_prior = np.broadcast_to(units / deviations, values.shape)
+    _finite("start and scale", np.array([values, units]), (2, max(len(values), 1)))
+    height, width = wanted.shape[1:3]
+    if not blocks or not all(
+        isinstance(b, (int, np.integer)) and b > 0 and height % b == width % b == 0 for b in blocks
+    ):
+        raise InputError(f"blocks must divide pictures of {width} x {height} pixels; found {blocks}")
+    if steps < 1:
+        raise InputError(f"steps must be at least 1; found {steps}")
+    means, deviations = (values, np.full(len(values), np.inf)) if prior is None else _pair("prior", prior, values)
+    if not (deviations > 0).all() or not np.isfinite(means).all():
+        raise InputError("prior must have finite means, and positive standard deviations")
+    low, high = _pair("bounds", bounds, values)
+    if not ((low <= values) & (values <= high)).all():
+        raise InputError("start must lie within bounds")
+    of_prior = units / deviations
     evaluations = 0
     for block in blocks:
         noise = np.sqrt(_block_means(spread, block)) / block
@@ -93,16 +107,18 @@ def fit_pictures(
             """Residuals of the pixels, followed by those of the prior."""
             nonlocal evaluations
             evaluations += 1
-            pixels = _block_means(np.asarray(pictures_of(at, block), float) - wanted, block) / noise
+            pictures = _finite("pictures_of(values, block)", pictures_of(at, block), wanted.shape)
+            pixels = _block_means(pictures - wanted, block) / noise
             return np.concatenate([pixels.ravel(), (at - means) / deviations])
 
         def jacobian(at: Doubles, block: int = block, noise: Doubles = noise) -> Doubles:
             """(pixels, P), by the values in units of their scale."""
             nonlocal seed
             seed += 1
-            found = [
-                _block_means(np.asarray(d, float), block) / noise for d in np.asarray(derivatives_of(at, block, seed))
-            ]
+            slopes = _finite(
+                "derivatives_of(values, block, seed)", derivatives_of(at, block, seed), (len(at), *wanted.shape)
+            )
+            found = [_block_means(slope, block) / noise for slope in slopes]
             return np.asarray(np.reshape(found, (len(at), -1)).T * units)
 
         damping, now = 1.0, residuals(values)
@@ -120,7 +136,7 @@ def fit_pictures(
                 if (strengths * change**2).sum() < SHORTEST**2:
                     break
                 if np.linalg.norm(change) < LONGEST:
-                    there = np.clip(values - units * (axes @ change), *bounds)
+                    there = np.clip(values - units * (axes @ change), low, high)
                     then = residuals(there)
                     if is_better := bool(then @ then < now @ now):
                         values, now, damping = there, then, damping / 10
@@ -128,8 +144,27 @@ def fit_pictures(
                 damping *= 10
             if not is_better:
                 break
-    covariance = np.linalg.pinv(information) * np.outer(units, units)
+    covariance = (axes / np.maximum(strengths, LEAST_INFORMATION)) @ axes.T * np.outer(units, units)
     return PictureFit(values, covariance, float((now[: -len(values)] ** 2).mean()), evaluations)
+
+
+def _finite(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Doubles:
+    """Returns values as an array. Raises InputError unless they have the shape and are finite."""
+    array = np.asarray(values, float)
+    if array.shape != shape:
+        raise InputError(f"{name} must have shape {shape}; found {array.shape}")
+    if not np.isfinite(array).all():
+        raise InputError(f"{name} must be finite; found {array[~np.isfinite(array)][0]}")
+    return array
+
+
+def _pair(name: str, pair: tuple[ArrayLike, ArrayLike], values: Doubles) -> tuple[Doubles, Doubles]:
+    """Returns two arrays of numbers for each value, (P,). Raises InputError."""
+    arrays = [np.asarray(part, float) for part in pair]
+    if len(arrays) != 2 or any(array.shape not in ((), values.shape) for array in arrays):
+        raise InputError(f"{name} must be two numbers or arrays ({len(values)},)")
+    first, second = (np.broadcast_to(array, values.shape) for array in arrays)
+    return first, second
 
 
 def _block_means(pictures: Doubles, block: int) -> Doubles:

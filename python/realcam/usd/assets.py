@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
+import tempfile
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from pxr import Ar, Sdf
@@ -34,9 +37,26 @@ def asset_of(opened: OpenStage, value: Sdf.AssetPath) -> Asset:
         data = _packed_data(resolved)
         if data.startswith((b"\x89PNG", b"\xff\xd8")) or not data:
             return Asset(name, data=data)
-        return Asset(name, str(opened.extracted(Path(name).name, data)))
+        return Asset(name, str(extracted(Path(name).name, data)))
     beside = Path(opened.path).absolute().parent / Path(name.replace("\\", "/")).name
     return Asset(name, next((str(path) for path in (resolved, beside) if path and Path(path).is_file()), ""))
+
+
+def extracted(name: str, data: bytes) -> Path:
+    """Writes a file of a .usdz into a temporary folder, and returns its path. It exists until the program ends: lenses
+    are read after the stage, and a film's frames compare the contents of all inputs."""
+    path = Path(_folder().name, hashlib.sha256(data).hexdigest(), name)
+    if not path.is_file():
+        path.parent.mkdir(exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+            file.write(data)
+        Path(file.name).replace(path)
+    return path
+
+
+@cache
+def _folder() -> tempfile.TemporaryDirectory[str]:
+    return tempfile.TemporaryDirectory(prefix="realcam-")
 
 
 def _packed_data(path: str) -> bytes:

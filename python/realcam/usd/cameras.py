@@ -6,6 +6,7 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 from pxr import Gf, Sdf, Usd, UsdGeom
@@ -14,12 +15,14 @@ from .._core import Lens, RealcamError
 from ..shot import toml_value
 from .assets import asset_of
 from .glb import Json
+from .motion import MAX_KEYS
 from .stage import OpenStage, children_of, open_stage
 
 # Attributes of a camera prim by which a stage keeps its lens. The focus is in metres, from the object plane to the
 # film; USD's own focusDistance is in units of the stage, from the camera's origin, which is the entrance pupil.
 LENS, F_NUMBER, FOCUS_M = "realcam:lens", "realcam:fNumber", "realcam:focusM"
 _DEFAULT_LENS = "double-gauss-50mm"  # ShotRequest::lens of cpp/shot/shot_request.hpp
+_TOLERANCE = 1e-3  # of focus and f-number between keyframes, relative
 _FILM_MM = (1.0, 500.0)  # diagonals of films that are not taken for a mistake in the stage's units
 
 
@@ -138,12 +141,8 @@ class _Settings:
             shift = [to_mm * self._number(f"{side}ApertureOffset") for side in ("horizontal", "vertical")]
             if any(shift):
                 values["film_shift_mm"] = shift
-        self._add_focus(values)
-        f_number = self._number(F_NUMBER) or self._number("fStop")
-        if f_number > 0:
-            values["f_number"] = f_number
+        self._add_rings(values)
         self._add_exposure(values)
-        self._add_keys(values)
         return values
 
     def _add_lens(self, values: dict[str, Any]) -> None:
@@ -161,12 +160,49 @@ class _Settings:
             raise self.opened.fail(attribute.GetPath(), f"expected the name of a lens or its file; found {lens!r:.60}")
         values["lens"] = lens
 
-    def _add_focus(self, values: dict[str, Any]) -> None:
-        focus_m, distance = self._number(FOCUS_M), self._number("focusDistance")
-        if focus_m > 0:
-            values["focus_m"] = focus_m
-        elif distance > 0:
-            values["focus_m"] = distance * self.metres + _pupil_to_film_m(values.get("lens", _DEFAULT_LENS))
+    def _add_rings(self, values: dict[str, Any]) -> None:
+        """Adds focus and f-number, as keyframes if they have values over time."""
+        keys: dict[float, dict[str, Any]] = {}
+        to_film_m = _pupil_to_film_m(values.get("lens", _DEFAULT_LENS))
+        for key, sources in (
+            ("focus_m", ((FOCUS_M, 1.0, 0.0), ("focusDistance", self.metres, to_film_m))),
+            ("f_number", ((F_NUMBER, 1.0, 0.0), ("fStop", 1.0, 0.0))),
+        ):
+            for name, factor, offset in sources:
+                number = self._number(name)
+                if number <= 0:
+                    continue
+                samples = self._samples(name)
+                if len(samples) < 2:
+                    values[key] = number * factor + offset
+                for seconds, sample in samples.items() if len(samples) >= 2 else ():
+                    keys.setdefault(seconds, {})[key] = sample * factor + offset
+                break
+        if keys:
+            held = {"interpolation": "step"} if self._is_held else {}
+            values["key"] = [{"time_s": time, **keys[time], **held} for time in sorted(keys)]
+
+    @property
+    def _is_held(self) -> bool:
+        return bool(self.opened.stage.GetInterpolationType() == Usd.InterpolationTypeHeld)
+
+    def _samples(self, name: str) -> dict[float, float]:
+        """Returns the positive values of an attribute over time, by seconds. USD interpolates them linearly, and
+        realcam their inverses or logarithms: there are more of them where the two would differ by more than
+        _TOLERANCE."""
+        attribute = self.prim.GetAttribute(name)
+        samples = [(time, self._number(name, time)) for time in attribute.GetTimeSamples()[:MAX_KEYS]]
+        samples = [(time, number) for time, number in samples if number > 0]
+        found = {self.opened.seconds(time): number for time, number in samples}
+        if self._is_held:
+            return found
+        for (start, first), (end, last) in pairwise(samples):
+            # Halfway, inverses of two numbers with the ratio exp(r) differ from numbers by r^2 / 4, logarithms by half.
+            count = math.ceil(abs(math.log(last / first)) / (2 * math.sqrt(_TOLERANCE)))
+            for share in (i / count for i in range(1, count) if len(found) < MAX_KEYS):
+                time = start + share * (end - start)
+                found[self.opened.seconds(time)] = first + share * (last - first)
+        return found
 
     def _add_exposure(self, values: dict[str, Any]) -> None:
         """Adds the exposure time and the sensitivity, if the camera has an exposure time. `exposure` is a factor 2^n on
@@ -176,25 +212,6 @@ class _Settings:
             return
         values["exposure_time_s"] = self._number("exposure:time")
         values["iso"] = self._number("exposure:iso") * 2 ** self._number("exposure")
-
-    def _add_keys(self, values: dict[str, Any]) -> None:
-        """Adds keyframes of focus and f-number, if these have values over time."""
-        keys: dict[float, dict[str, float]] = {}
-        offset_m = _pupil_to_film_m(values.get("lens", _DEFAULT_LENS))
-        for name, key, factor, offset in (
-            ("focusDistance", "focus_m", self.metres, offset_m),
-            ("fStop", "f_number", 1.0, 0.0),
-        ):
-            attribute = self.prim.GetAttribute(name)
-            if key not in values or attribute.GetNumTimeSamples() < 2:
-                continue
-            del values[key]
-            for time in attribute.GetTimeSamples():
-                number = self._number(name, time)
-                if number > 0:
-                    keys.setdefault(self.opened.seconds(time), {})[key] = number * factor + offset
-        if keys:
-            values["key"] = [{"time_s": time, **keys[time]} for time in sorted(keys)]
 
     def _number(self, name: str, time: float | None = None) -> float:
         """Returns the number of an attribute; 0 if the camera lacks it. Raises SceneFileError for other values."""

@@ -12,7 +12,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux
 
 from .._core import Scene
 from ..image_file import read_environment
-from .assets import asset_of
+from .assets import asset_of, extracted
 from .lights import radiance_of
 from .stage import OpenStage
 
@@ -70,7 +70,7 @@ class Domes:
         if not asset.exists:
             self.opened.notices.add(prim.GetPath(), f"{path.path}: no such file; the dome has no texture")
             return None
-        file = asset.path or str(self.opened.extracted("dome.png", asset.data))
+        file = asset.path or str(extracted("dome.png", asset.data))
         return np.asarray(read_environment(file))
 
 

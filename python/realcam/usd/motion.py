@@ -11,7 +11,7 @@ from pxr import Gf, Usd, UsdGeom
 from .glb import Glb, Json
 from .stage import OpenStage
 
-_MAX_KEYS = 20_000  # of a prim
+MAX_KEYS = 20_000  # of a prim
 _TOLERANCE = 1e-3  # of a matrix between keys, relative to its largest element
 _MAX_HALVINGS = 6  # of the time between two samples
 
@@ -61,9 +61,9 @@ def _local(xformable: UsdGeom.Xformable, time: Usd.TimeCode) -> Gf.Matrix4d:
 def _keys(opened: OpenStage, xformable: UsdGeom.Xformable, is_held: bool) -> tuple[list[float], list[Trs]]:
     """Returns the times of keys, as time codes, and the transforms at them. Between two samples of the stage there are
     more keys where the interpolation of glTF would differ from that of USD, as for a whole turn."""
-    samples = sorted(xformable.GetTimeSamples())[:_MAX_KEYS]
-    if len(samples) == _MAX_KEYS:
-        opened.notices.add(xformable.GetPath(), f"only the first {_MAX_KEYS} time samples are read")
+    samples = sorted(xformable.GetTimeSamples())[:MAX_KEYS]
+    if len(samples) == MAX_KEYS:
+        opened.notices.add(xformable.GetPath(), f"only the first {MAX_KEYS} time samples are read")
     prim = xformable.GetPrim()
 
     def at(time: float) -> tuple[Gf.Matrix4d, Trs]:
@@ -76,7 +76,7 @@ def _keys(opened: OpenStage, xformable: UsdGeom.Xformable, is_held: bool) -> tup
     def add_between(begin: float, first: Trs, end: float, last: Trs, halvings: int) -> None:
         middle = (begin + end) / 2
         matrix, trs = at(middle)
-        if halvings == 0 or len(times) > _MAX_KEYS or _is_near(np.array(matrix), _halfway(first, last)):
+        if halvings == 0 or len(times) > MAX_KEYS or _is_near(np.array(matrix), _halfway(first, last)):
             return
         add_between(begin, first, middle, trs, halvings - 1)
         times.append(middle)

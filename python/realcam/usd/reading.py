@@ -66,7 +66,10 @@ class Translation:
         self._materials = Materials(opened, self.glb)
         self._meshes: dict[Any, int | None] = {}
         self._world = UsdGeom.XformCache(opened.time)
-        turn = _Y_FROM_Z_UP if UsdGeom.GetStageUpAxis(opened.stage) == UsdGeom.Tokens.z else Gf.Matrix4d(1)
+        up = UsdGeom.GetStageUpAxis(opened.stage)
+        if up not in (UsdGeom.Tokens.y, UsdGeom.Tokens.z):
+            opened.notices.add("upAxis", f"expected Y or Z; found {up}; Y is up")
+        turn = _Y_FROM_Z_UP if up == UsdGeom.Tokens.z else Gf.Matrix4d(1)
         self._scene_from_stage = turn * Gf.Matrix4d().SetScale(opened.metres_per_unit)
 
     def add_stage(self) -> None:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pxr import Sdf, Tf, Usd, UsdGeom, UsdUtils
+from pxr import Ar, Sdf, Tf, Usd, UsdGeom, UsdUtils
 
 from .._core import InputError, SceneFileError, _did_you_mean
+from ..files import record_input
 from .notices import Notices
 
 MAX_LAYERS = 10_000
@@ -49,7 +49,6 @@ class OpenStage:
     diagnostics: Diagnostics | None = None
     notices: Notices = field(default_factory=Notices)
     _prim_count: int = 0
-    _folder: tempfile.TemporaryDirectory[str] | None = None
 
     @property
     def time(self) -> Usd.TimeCode:
@@ -79,14 +78,6 @@ class OpenStage:
             raise SceneFileError(f"{self.path}: has more than {MAX_PRIMS} prims and instances")
         if depth > MAX_DEPTH:
             raise self.fail(prim, f"is more than {MAX_DEPTH} prims deep")
-
-    def extracted(self, name: str, data: bytes) -> Path:
-        """Writes a file of a .usdz into a temporary folder, which exists as long as this object."""
-        if self._folder is None:
-            self._folder = tempfile.TemporaryDirectory(prefix="realcam-")
-        path = Path(tempfile.mkdtemp(dir=self._folder.name), name)
-        path.write_bytes(data)
-        return path
 
     def fail(self, prim: object, message: str) -> SceneFileError:
         """Returns an error that names the file and a prim."""
@@ -131,10 +122,12 @@ def _check_layers(opened: OpenStage) -> None:
     layers = opened.stage.GetUsedLayers()
     if len(layers) > MAX_LAYERS:
         raise SceneFileError(f"{opened.path}: has {len(layers)} layers; at most {MAX_LAYERS} are read")
-    files = [Path(layer.realPath) for layer in layers if layer.realPath]
-    size = sum(file.stat().st_size for file in files if file.is_file())
-    if size > MAX_BYTES:
+    outermost = {Ar.SplitPackageRelativePathOuter(layer.realPath)[0] for layer in layers if layer.realPath}
+    files = [file for file in map(Path, outermost) if file.is_file()]
+    if sum(file.stat().st_size for file in files) > MAX_BYTES:
         raise SceneFileError(f"{opened.path}: its layers are larger than {MAX_BYTES >> 30} GiB")
+    for file in files:
+        record_input(file)
 
 
 def _select(opened: OpenStage, selection: str) -> None:

@@ -23,7 +23,7 @@ PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".exr", ".dng")
 #: Suffixes of the files that a picture, a shot or a lens can be saved as.
 SUFFIXES = {"picture": PICTURE_SUFFIXES, "shot": (".toml",), "lens": (".toml", ".zmx", ".seq", ".json", ".roa")}
 # Keys with paths relative to the shot file, of the shot and of its table [calibration].
-_FILES_OF_A_SHOT = ("scene", "environment", "texture", *CALIBRATION_FILES)
+_FILES_OF_A_SHOT = ("scene", "environment", "texture", "ocio", *CALIBRATION_FILES)
 _FILES_OF_A_CALIBRATION = ("file", "vignetting")
 _JPEG_QUALITY = 95
 
@@ -82,7 +82,7 @@ def shot_contents(
     tables = [(shot, _FILES_OF_A_SHOT), (shot["calibration"] if is_table else {}, _FILES_OF_A_CALIBRATION)]
     for table, keys in tables:
         for key in keys:
-            if isinstance(table.get(key), str):
+            if isinstance(table.get(key), str) and not table[key].startswith(BUILT_IN):
                 table[key] = os.path.relpath(source.folder / str(table[key]), path.absolute().parent)
     contents = {}
     values = {**controls.shot_values(), "effects": effects}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import realcam as rc
@@ -109,19 +111,52 @@ def test_focus_and_yaw_are_found() -> None:
         ({"blocks": (3,)}, "blocks must divide pictures of 8 x 4 pixels"),
         ({"variance": np.zeros(SHAPE)}, "variances positive"),
         ({"scale": [1.0, 0.0, 1.0]}, "scales positive"),
+        ({"observed": np.full(SHAPE, np.nan)}, "observed must be finite; found nan"),
+        ({"start": [np.nan, 0.0, 0.0]}, "start and scale must be finite; found nan"),
+        ({"start": [], "scale": []}, "start and scale must have shape"),
+        ({"blocks": (0,)}, "blocks must divide"),
+        ({"blocks": (2.0,)}, "blocks must divide"),
+        ({"steps": 0}, "steps must be at least 1; found 0"),
+        ({"prior": (np.zeros(3), [1.0, 0.0, 1.0])}, "positive standard deviations"),
+        ({"prior": (np.zeros(2), np.ones(2))}, "prior must be two numbers or arrays"),
+        ({"bounds": (np.ones(3), -np.ones(3))}, "start must lie within bounds"),
+        ({"bounds": (0.1, 1.0)}, "start must lie within bounds"),
+        # An array of one picture would be broadcast to all of them.
+        ({"pictures_of": lambda values, block: np.zeros(SHAPE)[0]}, "pictures_of.* must have shape"),
+        ({"pictures_of": lambda values, block: np.full(SHAPE, np.nan)}, "pictures_of.* must be finite; found nan"),
+        ({"derivatives_of": lambda values, block, seed: np.zeros((3, *SHAPE[1:]))}, "derivatives_of.* must have shape"),
+        ({"derivatives_of": lambda values, block, seed: np.full((3, *SHAPE), np.inf)}, "derivatives_of.* found inf"),
     ],
 )
 def test_wrong_arguments_are_refused(changes: dict[str, object], message: str) -> None:
     matrix, observed, variance = linear_problem()
-    arguments: dict[str, object] = {
+    arguments: dict[str, Any] = {
+        "pictures_of": lambda values, block: np.tensordot(values, matrix, 1),
+        "derivatives_of": lambda values, block, seed: matrix,
         "observed": observed,
         "variance": variance,
         "start": np.zeros(3),
         "scale": np.ones(3),
+        "blocks": (2, 1),
     }
     with pytest.raises(rc.InputError, match=message):
-        rc.fit_pictures(
-            lambda values, block: np.tensordot(values, matrix, 1),
-            lambda values, block, seed: matrix,
-            **{**arguments, **changes},
-        )
+        rc.fit_pictures(**{**arguments, **changes})
+
+
+def test_a_value_of_which_pictures_say_nothing_is_not_called_known() -> None:
+    matrix, observed, variance = linear_problem()
+    matrix = matrix * np.reshape([1, 0, 1], (3, 1, 1, 1, 1))
+    fit = rc.fit_pictures(
+        lambda values, block: np.tensordot(values, matrix, 1),
+        lambda values, block, seed: matrix,
+        observed,
+        variance,
+        np.zeros(3),
+        [1.0, 2.0, 1.0],
+        blocks=(2, 1),
+    )
+    assert fit.errors[1] == pytest.approx(2e6)
+    assert max(fit.errors[0], fit.errors[2]) < 10
+    deviations, axes = fit.directions([1.0, 2.0, 1.0])
+    assert deviations[0] == pytest.approx(1e6)
+    assert np.abs(axes[0]) == pytest.approx([0, 1, 0], abs=1e-6)
