@@ -29,7 +29,7 @@ Floats = NDArray[np.float32]
 _Key = tuple[str, int, int, int]  # Variable.as_tuple
 
 # Numbers of a camera behind those of the lens, as the core orders them: _PictureGradient.
-_FILM, _POSE, _STOP, _OTHERS = 0, 6, 12, 13
+_FILM, _POSE, _STOP, _RIMS, _OTHERS = 0, 6, 12, 13, 14
 _STEP = 2e-3  # of differences by settings of rings, relative
 _PER_M, _PER_DEG = 1000.0, math.pi / 180
 
@@ -46,6 +46,7 @@ _SINGLE = {
     "film_shift_up_mm": (_FILM + 1, -1.0),
     "film_tilt_x_deg": (_FILM + 3, _PER_DEG),
     "film_tilt_y_deg": (_FILM + 4, _PER_DEG),
+    "rim_scale": (_RIMS, 1.0),
 }
 PARAMETERS = (*_SINGLE, "focus_distance_m", "focal_length_mm", "f_number", "exposure_time_s")
 
@@ -90,6 +91,7 @@ def render_gradient(
         against the axis, through the film's centre;
       "film_shift_right_mm", "film_shift_up_mm": Film.shift_mm; "film_tilt_x_deg", "film_tilt_y_deg": rotation of the
         film about its own axes;
+      "rim_scale": common factor, 1 now, of the clear semi-diameters of all surfaces but the stop, which vignette;
       "focus_distance_m", "f_number": settings of the lens's rings; "focal_length_mm": setting of the zoom ring, as
         the focal length of the lens focused at infinity; "exposure_time_s", unless something moves;
       a dict of such parameters and their rates: a parameter by which all of these change.
@@ -200,6 +202,8 @@ def _rates_of(lens: Lens, parameter: Parameter) -> tuple[dict[Variable, float], 
     if isinstance(parameter, Variable):
         checked(lens, [parameter])
         return {parameter: 1.0}, {}
+    if parameter == "rim_scale" and len(lens.surfaces) == 1:
+        raise InputError("the derivative by rim_scale needs a surface besides the stop")
     if parameter in _SINGLE:
         index, factor = _SINGLE[parameter]
         return {}, {index: factor}
