@@ -98,7 +98,8 @@ def render_gradient(
     adjoint: (H, W, 3), derivatives of a function of the picture's exposure (lux seconds) by its pixels; returns the
       derivatives of the function by the parameters, (P,). None: returns those of the picture, (P, H, W, 3).
     outline_spp: samples per pixel on the outline of the pupil, by default spp / 16. control_spp: samples per pixel, of
-      other random numbers, of a first picture that serves as control variate for the pose, by default spp / 4; 0: none.
+      other random numbers, of a first picture that serves as control variate for the pose, by default the larger of
+      spp / 16 and min(4, spp / 4); 0: none.
     device: as in rc.render, but a single GPU. Only derivatives with an adjoint run on GPUs, for lenses without freeform
       surfaces; "auto" takes the CPU for all others. Both devices have the same samples, but for roundings.
     settings, changes: settings of rc.render. Without settings, the filter of the pixels is the tent; the box, whose
@@ -120,7 +121,8 @@ def render_gradient(
     if numbers.growth.any() and of_picture.scene_moves:
         raise InputError("the derivative by exposure_time_s needs a scene in which nothing moves during the exposure")
     spp = _spp_of(final)
-    control_count = max(1, spp // 4) if control_spp is None else control_spp
+    # The noise of few samples would be that of the control variate.
+    control_count = max(1, spp // 16, min(4, spp // 4)) if control_spp is None else control_spp
     samples: dict[str, Any] = {
         "seed": final.seed,
         "spp": spp,

@@ -31,8 +31,7 @@ enum Number : std::size_t {
     kPitch = 9,
     kYaw = 10,
     kRoll = 11,
-    kStop = 12,
-    kRims = 13
+    kStop = 12
 };
 
 struct Estimate {
@@ -322,12 +321,6 @@ TEST_CASE("derivatives of a picture with occlusion, defocus and vignetting equal
         {count + kYaw, [](Camera& c, double h) { c.pose.look_at_m = {-std::sin(h), 0, -std::cos(h)}; }, 1e-4, 1},
         {count + kRoll, [](Camera& c, double h) { c.pose.up = {-std::sin(h), std::cos(h), 0}; }, 2e-3, 1},
         {count + kStop, [](Camera& c, double h) { c.lens.stop_semi_diameter += h; }, 0.05, 1, true},
-        {count + kRims,
-         [](Camera& c, double h) {
-             for (Surface& s : c.lens.surfaces)
-                 if (&s != &c.lens.stop()) s.clear_semi_diameter *= 1 + h;
-         },
-         5e-3, 1, true},
     };
     for (const Case& one : cases) {
         CAPTURE(one.number);
