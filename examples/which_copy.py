@@ -1,11 +1,12 @@
 """Finds the spacings, tilts and decentres of a manufactured copy of a lens from pictures of a chart.
 
-    python examples/which_copy.py [--copies 2] [--grade precision]
+    python examples/which_copy.py [--copies 4] [--grade precision]
 
 Copies of a lens are drawn from a tolerance class. Each photographs a chart, in the centre of the film and in two of
 its corners, at three settings of the focusing ring, with shot noise. rc.fit_pictures finds its errors by Gauss-Newton
 steps, with the class as prior. Prints the directions that the pictures determine worst, and how well pictures at
-another focus and f-number, which were not used, are predicted: beside the nominal lens, in units of the noise.
+another focus and f-number, which were not used, are predicted: beside the nominal lens, in units of the noise. The last
+lines are a table of all copies.
 """
 
 from __future__ import annotations
@@ -167,7 +168,7 @@ class Bench:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--copies", type=int, default=2)
+    parser.add_argument("--copies", type=int, default=4)
     parser.add_argument("--grade", default="precision", help="commercial, precision or high")
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
@@ -176,6 +177,7 @@ def main() -> None:
         bench.lens, bench.tolerances, arguments.copies, seed=arguments.seed, compensators=(), rings=6
     )
     nothing = np.zeros(len(bench.names))
+    rows = []
     for number in range(arguments.copies):
         random = np.random.default_rng(number)
         errors = dict.fromkeys(bench.names, 0.0)
@@ -214,9 +216,18 @@ def main() -> None:
             print(f"  {size:.2f}: " + ", ".join(f"{axis[i]:+.2f} {bench.names[i]}" for i in parts))
         settings = {"spp": 1024, "focus_m": (HELD_OUT_M,), "f_number": HELD_OUT_F_NUMBER}
         held_out = bench.pictures(truth, 1, seed=78, **settings)
+        unseen = []
         for name, values in (("nominal lens", np.array([*nothing[:-2], *truth[-2:]])), ("fitted copy", fit.values)):
             predicted = bench.pictures(values, 1, seed=79, **settings)
-            print(f"  held out, {name}: {np.sqrt(np.mean((predicted - held_out) ** 2 / held_out)):.2f} of the noise")
+            unseen.append(np.sqrt(np.mean((predicted - held_out) ** 2 / held_out)))
+            print(f"  held out, {name}: {unseen[-1]:.2f} of the noise", flush=True)
+        rows.append((number, off, (sizes < 1 / 3).sum(), (sizes > 0.99).sum(), *unseen))
+    print(
+        "\n| copy | mean square of the posterior | directions known to a third | not at all | nominal lens, held out | "
+        "fitted copy |\n|---" + "|---" * 5 + "|"
+    )
+    for number, off, known, unknown, nominal, fitted in rows:
+        print(f"| {number} | {off:.2f} | {known} | {unknown} | {nominal:.2f} | {fitted:.2f} |")
 
 
 if __name__ == "__main__":

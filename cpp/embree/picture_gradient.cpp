@@ -142,7 +142,7 @@ struct PictureGradient::ReverseSums {
     AdjointFilm film;
     TangentPath::Sums sums;
     RayBlock block;
-    double by_stop = 0;
+    double by_stop = 0, by_rims = 0;
 };
 
 std::vector<double> PictureGradient::reverse(const float* adjoint, const float* control, const GradientSamples& samples,
@@ -186,6 +186,7 @@ std::vector<double> PictureGradient::reverse(const float* adjoint, const float* 
                             const Vec3f value = part.film(light.pixel, light.light, light.weight);
                             weights[i] = outline_scale * static_cast<double>(value.x);
                             part.by_stop += weights[i] * outline.points[i]->stop_rate;
+                            part.by_rims += weights[i] * outline.points[i]->rim_rate;
                         }
                         OutlineBlock traced = outline;
                         trace_outline(traced, weights, part.sums);
@@ -193,7 +194,7 @@ std::vector<double> PictureGradient::reverse(const float* adjoint, const float* 
                 });
             CameraDerivatives derivatives = path_.derivatives(all.front().sums);
             if (control) derivatives.by_pose = path_.derivatives(all.back().sums).by_pose;
-            rows[at] = by_all_numbers(derivatives, all.front().by_stop);
+            rows[at] = by_all_numbers(derivatives, all.front().by_stop, all.front().by_rims);
             unexplained[at] = row.unexplained, edges[at] = row.edge_count;
         },
         keep_going);
@@ -208,7 +209,7 @@ std::vector<double> PictureGradient::reverse(const float* adjoint, const float* 
 /// Direction in the space of the camera's numbers, in forward mode.
 struct PictureGradient::Direction {
     TangentPath::Coefficients all, pose;  ///< coefficients by all numbers, and by those of the pose alone
-    double stop_rate;
+    double stop_rate, rim_rate;
 };
 
 /// Motions of the samples of a block along a direction.
@@ -236,7 +237,7 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
         const TangentPath::Coefficients of_pose = path_.coefficients(rates);
         rates.by_variable.assign(direction, others);
         std::copy(others, others + 6, rates.by_film.begin());
-        along.push_back({path_.coefficients(rates), of_pose, others[12]});
+        along.push_back({path_.coefficients(rates), of_pose, others[12], others[13]});
     }
     run(
         [&](int row_index) {
@@ -294,7 +295,9 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
                     for (std::size_t k = 0; k < count; ++k) {
                         const Motions speeds(along[k], sums);
                         for (std::size_t i = 0; i < static_cast<std::size_t>(outline.count); ++i) {
-                            const double speed = speeds.all[i] + along[k].stop_rate * outline.points[i]->stop_rate;
+                            const OutlinePoint& point = *outline.points[i];
+                            const double speed = speeds.all[i] + along[k].stop_rate * point.stop_rate +
+                                                 along[k].rim_rate * point.rim_rate;
                             add(outline.lights[i], k, [&](double value, Vec2f) {
                                 return std::pair(outline_scale * speed * value, outline_scale * speeds.pose[i] * value);
                             });

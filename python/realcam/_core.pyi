@@ -3587,7 +3587,7 @@ class _PictureGradient:
         device: as for render; several GPUs are refused.
         The numbers of a camera are, in this order: the variables; translation (mm) and rotation (rad) of the film about its
         centre relative to the camera, along the film's axes; translation and rotation of the camera, along the camera's axes;
-        and the radius of the diaphragm (mm).
+        the radius of the diaphragm (mm); and a common factor of the semi-diameters of all surfaces but the stop.
         """
     def forward(
         self,

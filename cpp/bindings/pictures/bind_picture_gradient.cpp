@@ -99,7 +99,7 @@ void bind_picture_gradient(py::module_& m) {
 device: as for render; several GPUs are refused.
 The numbers of a camera are, in this order: the variables; translation (mm) and rotation (rad) of the film about its
 centre relative to the camera, along the film's axes; translation and rotation of the camera, along the camera's axes;
-and the radius of the diaphragm (mm).)")
+the radius of the diaphragm (mm); and a common factor of the semi-diameters of all surfaces but the stop.)")
         .def(
             "picture", picture, py::kw_only(), "seed"_a, "spp"_a, "uniform"_a = false,
             R"(Returns the picture with the filter, (H, W, 3), in lux seconds. uniform: of uniform light of radiance 1.)")

@@ -175,7 +175,7 @@ __global__ void __launch_bounds__(kBlockSize, kLensBlocks)
         const RayWavelength wavelength = wavelength_of(job, variable);
         trace_tangents_to_scene(
             job.tangents, [&](int k) { return wavelength.from(k); }, traced, nullptr, nullptr, warp);
-        warp.finish_ray(traced, 0);
+        warp.finish_ray(traced, 0, 0);
     }
 }
 
@@ -189,7 +189,7 @@ __global__ void __launch_bounds__(kBlockSize, kLensBlocks)
         float variable = 0;
         int start[1] = {0};
         Vec3d tangent[1] = {{0, 0, 0}};
-        double by_stop = 0;
+        double by_stop = 0, by_rims = 0;
         if (index < count && rays[index].weight > 0.0f) {
             const OutlineEdge& edge = edges[index];
             const GradientRay& ray = rays[index];
@@ -202,12 +202,12 @@ __global__ void __launch_bounds__(kBlockSize, kLensBlocks)
             variable = ray.variable;
             start[0] = edge.point.surface;
             tangent[0] = factor * edge.point.tangent;
-            by_stop = factor * edge.point.stop_rate;
+            by_stop = factor * edge.point.stop_rate, by_rims = factor * edge.point.rim_rate;
         }
         if (__all_sync(0xffffffffu, traced.status[0] != 0)) continue;
         const RayWavelength wavelength = wavelength_of(job, variable);
         trace_tangents_to_scene(job.tangents, [&](int k) { return wavelength.from(k); }, traced, start, tangent, warp);
-        warp.finish_ray(traced, by_stop);
+        warp.finish_ray(traced, by_stop, by_rims);
     }
 }
 

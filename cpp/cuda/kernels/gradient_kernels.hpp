@@ -22,7 +22,7 @@ struct GradientJob {
     TangentLens tangents;  ///< without freeforms
     const std::uint32_t* used_numbers;  ///< TangentPath::numbers_in_use
     int sum_count;  ///< number of sums of each warp: those of the film's frame, of the used numbers of all surfaces, of
-                    ///< the pose, and of the stop
+                    ///< the pose, of the stop, and of the rims
 };
 
 /// Range of the samples of all pixels of the extended film, row by row, with `spp` samples each.

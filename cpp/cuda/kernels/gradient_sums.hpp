@@ -65,8 +65,8 @@ public:
             step_.sums[number][0] = 0;
         }
     }
-    /// Adds the pose and the stop, and returns to the first sum.
-    __device__ void finish_ray(const TangentRays<1>& rays, double by_stop) {
+    /// Adds the pose, the stop and the rims, and returns to the first sum.
+    __device__ void finish_ray(const TangentRays<1>& rays, double by_stop, double by_rims) {
         const bool alive = rays.status[0] == 0;
         REALCAM_UNROLL
         for (int i = 0; i < 6; ++i) {
@@ -74,6 +74,7 @@ public:
             pose_[i][0] = 0;
         }
         add(by_stop);
+        add(by_rims);
         next_ = sums_;
     }
 

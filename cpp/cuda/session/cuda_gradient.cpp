@@ -110,7 +110,7 @@ public:
         edges_ = samples.boundary ? sample_count(samples.outline_spp) : 0;
         CameraDerivatives derivatives = derivatives_of(totals.data());
         if (control) derivatives.by_pose = derivatives_of(totals.data() + sum_count).by_pose;
-        return by_all_numbers(derivatives, totals[sum_count - 1]);
+        return by_all_numbers(derivatives, totals[sum_count - 2], totals[sum_count - 1]);
     }
 
     std::vector<float> forward(const std::vector<double>&, const float*, const GradientSamples&,
@@ -187,8 +187,8 @@ private:
         }
     }
 
-    /// Returns the derivatives that follow from the totals of all rays, in the order of WarpSums; the last total is the
-    /// derivative by the stop.
+    /// Returns the derivatives that follow from the totals of all rays, in the order of WarpSums; the last two are the
+    /// derivatives by the stop and the rims.
     CameraDerivatives derivatives_of(const double* total) const {
         TangentPath::Sums sums(path_);
         for (int number = 0; number < kFrameNumbers; ++number) sums.film.sums[number][0] = *total++;

@@ -33,12 +33,12 @@ public:
         job_.tangents = path.view();
         job_.tangents.surfaces = copy(job_.tangents.surfaces, surfaces);
         job_.used_numbers = copy(used_numbers.data(), used_numbers.size());
-        job_.sum_count = kFrameNumbers + kPoseAndStop;
+        job_.sum_count = kFrameNumbers + kPoseAndRims;
         for (const std::uint32_t numbers : used_numbers) job_.sum_count += std::popcount(numbers);
         stream_.wait("copying a lens to it");
     }
 
-    static constexpr int kPoseAndStop = 7;
+    static constexpr int kPoseAndRims = 8;
 
     const CudaStream& stream() const { return stream_; }
     const GradientJob& job() const { return job_; }

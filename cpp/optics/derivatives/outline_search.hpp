@@ -23,6 +23,7 @@ struct OutlinePoint {
     /// normal of the rim, towards the rays that it blocks.
     Vec3d tangent = {0, 0, 0};
     double stop_rate = 0;  ///< motion of the rim along the normal per growth of the diaphragm's radius; 0 except on it
+    double rim_rate = 0;  ///< motion of the rim along the normal per growth of the rims' scale (RimDistance)
     double inverse_speed = 0;  ///< inverse of the speed, per t, with which the ray moves across the rim, 1/mm
     Vec3d origin = {0, 0, 0}, direction = {0, 0, 0};  ///< ray in front of the lens, in the camera's frame: mm, optical
                                                       ///< direction
@@ -64,6 +65,9 @@ struct RimDistance {
     double distance;
     Vec2d normal;  ///< unit vector, away from the opening
     double stop_rate;  ///< see OutlinePoint
+    /// Motion per growth of a common factor of the rims of all surfaces but the stop; 0 on the stop and at central
+    /// obstructions.
+    double rim_rate;
 
     /// `at`: x and y in the surface's frame, mm.
     REALCAM_HD RimDistance(const OutlineLens& lens, const SurfaceView<double>& surface, Vec2d at) {
@@ -71,10 +75,13 @@ struct RimDistance {
         const Vec2d outwards = radius > 0 ? Vec2d{at.x / radius, at.y / radius} : Vec2d{1, 0};
         distance = std::sqrt(surface.rim_squared) - radius;
         normal = outwards;
-        stop_rate = surface.surface_index == lens.stop_index && lens.stop_is_rim ? 1 : 0;
+        const bool is_stop = surface.surface_index == lens.stop_index;
+        stop_rate = is_stop && lens.stop_is_rim ? 1 : 0;
+        rim_rate = is_stop ? 0 : std::sqrt(surface.rim_squared);
         if (surface.hole_squared > 0) {
             const double from_hole = radius - std::sqrt(surface.hole_squared);
-            if (from_hole < distance) distance = from_hole, normal = {-outwards.x, -outwards.y}, stop_rate = 0;
+            if (from_hole < distance)
+                distance = from_hole, normal = {-outwards.x, -outwards.y}, stop_rate = rim_rate = 0;
         }
         if (surface.has_blades) meet_blades(lens, radius, at);
     }
@@ -139,7 +146,7 @@ REALCAM_HD inline void measure_clearance(const OutlineLens& lens, const TangentL
 /// Rim that is nearest to a ray, and its edge there.
 struct NearestRim {
     double distance = std::numeric_limits<double>::max();  ///< see RimDistance
-    double stop_rate = 0;
+    double stop_rate = 0, rim_rate = 0;  ///< see OutlinePoint
     int surface = 0;  ///< see OutlinePoint
     Vec3d tangent = {0, 0, 0};
     double speed = 0;  ///< with which the ray approaches the edge in the rim's plane, per t, mm
@@ -159,10 +166,13 @@ REALCAM_GPU_CALL void find_nearest_rims(const OutlineLens& lens, Record& record,
             const Vec3d p = directions[i], moved = tangents[i];
             const double rise = moved.z / p.z;
             NearestRim& rim = rims[i];
-            rim.distance = edge.distance, rim.stop_rate = edge.stop_rate;
+            rim.distance = edge.distance;
             rim.surface = k;
             rim.tangent = tangent_of_cosines(p, edge.normal);
             rim.speed = edge.normal.x * (moved.x - rise * p.x) + edge.normal.y * (moved.y - rise * p.y);
+            // A rim that grows along a curved surface also moves along z.
+            const double in_plane = std::fabs(rim.speed / (edge.normal.x * moved.x + edge.normal.y * moved.y));
+            rim.stop_rate = in_plane * edge.stop_rate, rim.rim_rate = in_plane * edge.rim_rate;
         }
     });
 }
@@ -276,9 +286,9 @@ REALCAM_HD inline int find_outline(const OutlineLens& lens, const DirectionLine 
             // Rays that are flatter than a steep surface pass its rim's plane outside the rim if they pass the surface
             // inside it.
             const double side = (rim.speed > 0) == edges[n][i].low_passes ? 1 : -1;
-            if (std::fabs(rim.distance) < 1e-5 * size && std::isfinite(inverse_speed))
-                points[n][i] = {t[i],          rim.surface,    side * rim.tangent, rim.stop_rate,
-                                inverse_speed, rays.origin[i], rays.direction[i]};
+            if (std::fabs(rim.distance) < 1e-5 * size && std::isfinite(inverse_speed) && std::isfinite(rim.rim_rate))
+                points[n][i] = {t[i],         rim.surface,   side * rim.tangent, rim.stop_rate,
+                                rim.rim_rate, inverse_speed, rays.origin[i],     rays.direction[i]};
             else
                 ++unexplained;
         }

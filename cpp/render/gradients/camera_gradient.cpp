@@ -79,11 +79,12 @@ Vec2d CameraGradient::pixels_per_mm() const {
     return {-camera_.film.width / camera_.film.width_mm, camera_.film.height / camera_.film.height_mm};
 }
 
-std::vector<double> CameraGradient::by_all_numbers(const CameraDerivatives& by, double by_stop) {
+std::vector<double> CameraGradient::by_all_numbers(const CameraDerivatives& by, double by_stop, double by_rims) {
     std::vector<double> list = by.by_variable;
     list.insert(list.end(), by.by_film.begin(), by.by_film.end());
     list.insert(list.end(), by.by_pose.begin(), by.by_pose.end());
     list.push_back(by_stop);
+    list.push_back(by_rims);
     return list;
 }
 

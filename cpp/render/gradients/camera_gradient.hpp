@@ -36,7 +36,8 @@ struct GradientSamples {
 /// because a scene ray neither changes its radiance nor, through a lens without coatings, its weight.
 ///
 /// The numbers of a camera, in this order: the lens variables; translation (mm) and rotation (rad) of the film and of
-/// the camera (CameraDerivatives); and the radius of the diaphragm, mm.
+/// the camera (CameraDerivatives); the radius of the diaphragm, mm; and a common factor of the semi-diameters of all
+/// surfaces but the stop.
 class CameraGradient {
 public:
     virtual ~CameraGradient() = default;
@@ -78,7 +79,7 @@ protected:
     CameraGradient(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                    std::vector<LensVariable> variables, const PupilTracer& tracer);
 
-    static constexpr std::size_t kOtherNumbers = 13;
+    static constexpr std::size_t kOtherNumbers = 14;
 
     /// Returns the sum over the channels of the adjoint times the control variate, for AdjointFilm; empty without one.
     std::vector<float> adjoint_of_control(const float* adjoint, const float* control) const;
@@ -87,7 +88,7 @@ protected:
     /// Columns per mm along x of the film, and rows per mm along y.
     Vec2d pixels_per_mm() const;
     /// Returns the derivatives by all numbers, in their order.
-    static std::vector<double> by_all_numbers(const CameraDerivatives& by, double by_stop);
+    static std::vector<double> by_all_numbers(const CameraDerivatives& by, double by_stop, double by_rims);
 
     Camera camera_;
     RenderSettings settings_;

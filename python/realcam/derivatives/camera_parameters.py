@@ -26,6 +26,7 @@ _POSITION = ("right_m", "up_m", "backward_m")
 _ROTATION = ("pitch_deg", "yaw_deg", "roll_deg")
 _SHIFT = ("film_shift_right_mm", "film_shift_up_mm")
 _RINGS = ("focus_distance_m", "f_number")
+_RIMS = "rim_scale"
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ class CameraParameters:
       right_m, up_m, backward_m: translation along the axes of `camera`, which has 0;
       pitch_deg, yaw_deg, roll_deg: rotation vector along the same axes;
       film_shift_right_mm, film_shift_up_mm, focus_distance_m, f_number: themselves, with the rings of `camera`;
+      rim_scale: factor of the clear semi-diameters of all surfaces of `camera` but the stop;
       Variables: themselves at the focus of `camera`; if the ring moves a distance, both changes are added.
     Raises InputError for parameters that cannot be set, and at values for which there is no camera.
     """
@@ -45,7 +47,7 @@ class CameraParameters:
 
     def __init__(self, camera: Camera, parameters: Parameter | Sequence[Parameter]) -> None:
         listed = (parameters,) if isinstance(parameters, (str, Variable)) else tuple(parameters)
-        settable = (*_POSITION, *_ROTATION, *_SHIFT, *_RINGS)
+        settable = (*_POSITION, *_ROTATION, *_SHIFT, *_RINGS, _RIMS)
         for parameter in listed:
             if isinstance(parameter, Variable):
                 if parameter.quantity not in SETTABLE:
@@ -71,6 +73,8 @@ class CameraParameters:
         """Returns the camera with these values, (P,)."""
         at = self._named(values)
         camera, lens = self.camera, self._turned(at)
+        if at.get(_RIMS, 1.0) != 1:
+            lens = with_rims(lens, at[_RIMS])
         variables = [p for p in self.parameters if isinstance(p, Variable)]
         if variables:
             shifted = [v.of(lens.surfaces[v.surface]) + at[v] - self._value_of(v) for v in variables]
@@ -149,7 +153,7 @@ class CameraParameters:
             return parameter.of(lens.surfaces[parameter.surface])
         if parameter in _SHIFT:
             return self.camera.film.shift_mm[_SHIFT.index(parameter)]
-        return {"focus_distance_m": lens.focus_distance_m, "f_number": lens.f_number}.get(parameter, 0.0)
+        return {"focus_distance_m": lens.focus_distance_m, "f_number": lens.f_number, _RIMS: 1.0}.get(parameter, 0.0)
 
     def _named(self, values: ArrayLike) -> dict[Parameter, float]:
         """Values by parameter. Raises InputError."""
@@ -168,6 +172,18 @@ class CameraParameters:
     def _rotation(self, at: dict[Parameter, float]) -> Doubles:
         """Rotation vector, (3,), radians."""
         return np.radians([at.get(name, 0.0) for name in _ROTATION])
+
+
+def with_rims(lens: Lens, scale: float) -> Lens:
+    """Returns the lens with the clear semi-diameters of all surfaces but the stop scaled. Raises InputError if that
+    lens cannot be built."""
+    return lens.with_surfaces(
+        {
+            i: s.replace(clear_semi_diameter_mm=scale * s.clear_semi_diameter_mm)
+            for i, s in enumerate(lens.surfaces)
+            if i != lens.stop_index
+        }
+    )
 
 
 def rotation_matrix(vector: Doubles) -> Doubles:

@@ -29,7 +29,7 @@ Floats = NDArray[np.float32]
 _Key = tuple[str, int, int, int]  # Variable.as_tuple
 
 # Numbers of a camera behind those of the lens, as the core orders them: _PictureGradient.
-_FILM, _POSE, _STOP, _OTHERS = 0, 6, 12, 13
+_FILM, _POSE, _STOP, _RIMS, _OTHERS = 0, 6, 12, 13, 14
 _STEP = 2e-3  # of differences by settings of rings, relative
 _PER_M, _PER_DEG = 1000.0, math.pi / 180
 
@@ -46,6 +46,7 @@ _SINGLE = {
     "film_shift_up_mm": (_FILM + 1, -1.0),
     "film_tilt_x_deg": (_FILM + 3, _PER_DEG),
     "film_tilt_y_deg": (_FILM + 4, _PER_DEG),
+    "rim_scale": (_RIMS, 1.0),
 }
 PARAMETERS = (*_SINGLE, "focus_distance_m", "focal_length_mm", "f_number", "exposure_time_s")
 
@@ -90,13 +91,15 @@ def render_gradient(
         against the axis, through the film's centre;
       "film_shift_right_mm", "film_shift_up_mm": Film.shift_mm; "film_tilt_x_deg", "film_tilt_y_deg": rotation of the
         film about its own axes;
+      "rim_scale": common factor, 1 now, of the clear semi-diameters of all surfaces but the stop, which vignette;
       "focus_distance_m", "f_number": settings of the lens's rings; "focal_length_mm": setting of the zoom ring, as
         the focal length of the lens focused at infinity; "exposure_time_s", unless something moves;
       a dict of such parameters and their rates: a parameter by which all of these change.
     adjoint: (H, W, 3), derivatives of a function of the picture's exposure (lux seconds) by its pixels; returns the
       derivatives of the function by the parameters, (P,). None: returns those of the picture, (P, H, W, 3).
     outline_spp: samples per pixel on the outline of the pupil, by default spp / 16. control_spp: samples per pixel, of
-      other random numbers, of a first picture that serves as control variate for the pose, by default spp / 4; 0: none.
+      other random numbers, of a first picture that serves as control variate for the pose, by default the larger of
+      spp / 16 and min(4, spp / 4); 0: none.
     device: as in rc.render, but a single GPU. Only derivatives with an adjoint run on GPUs, for lenses without freeform
       surfaces; "auto" takes the CPU for all others. Both devices have the same samples, but for roundings.
     settings, changes: settings of rc.render. Without settings, the filter of the pixels is the tent; the box, whose
@@ -118,7 +121,8 @@ def render_gradient(
     if numbers.growth.any() and of_picture.scene_moves:
         raise InputError("the derivative by exposure_time_s needs a scene in which nothing moves during the exposure")
     spp = _spp_of(final)
-    control_count = max(1, spp // 4) if control_spp is None else control_spp
+    # The noise of few samples would be that of the control variate.
+    control_count = max(1, spp // 16, min(4, spp // 4)) if control_spp is None else control_spp
     samples: dict[str, Any] = {
         "seed": final.seed,
         "spp": spp,
@@ -200,6 +204,8 @@ def _rates_of(lens: Lens, parameter: Parameter) -> tuple[dict[Variable, float], 
     if isinstance(parameter, Variable):
         checked(lens, [parameter])
         return {parameter: 1.0}, {}
+    if parameter == "rim_scale" and len(lens.surfaces) == 1:
+        raise InputError("the derivative by rim_scale needs a surface besides the stop")
     if parameter in _SINGLE:
         index, factor = _SINGLE[parameter]
         return {}, {index: factor}

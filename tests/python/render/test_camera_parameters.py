@@ -59,6 +59,17 @@ def test_pose_derivatives_are_those_of_the_axes() -> None:
         np.testing.assert_allclose([found.get(name, 0) for name in POSE[3:]], wanted, atol=1e-8)
 
 
+def test_rims_are_scaled_but_for_the_stop() -> None:
+    camera = corner_camera()
+    family = rc.CameraParameters(camera, ["rim_scale", "f_number"])
+    assert family.values[0] == 1
+    there, here = family.camera_at([0.9, 5.6]).lens, camera.lens
+    radii = [[s.clear_semi_diameter_mm for s in lens.surfaces] for lens in (there, here)]
+    factors = np.divide(*radii)
+    assert factors[here.stop_index] == 1 and there.f_number == pytest.approx(5.6)
+    np.testing.assert_allclose(np.delete(factors, here.stop_index), 0.9, rtol=1e-14)
+
+
 @pytest.mark.slow
 def test_derivatives_by_values_equal_differences() -> None:
     scene, base = stripes(), corner_camera()

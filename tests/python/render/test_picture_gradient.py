@@ -85,6 +85,8 @@ def changed(camera: rc.Camera, parameter: str, step: float) -> rc.Camera:
     if parameter == "focal_length_mm":
         focal_length = lens.focused(np.inf).first_order().effective_focal_length_mm
         return camera.replace(lens=lens.zoomed(focal_length + step))
+    if parameter == "rim_scale":
+        return rc.CameraParameters(camera, "rim_scale").camera_at([1 + step])
     assert parameter == "f_number"
     return camera.replace(lens=lens.stopped_down(lens.f_number + step))
 
@@ -103,6 +105,7 @@ STEPS = {
     "focus_distance_m": 0.05,
     "f_number": 0.05,
     "focal_length_mm": 0.2,
+    "rim_scale": 3e-3,
 }
 
 
@@ -206,11 +209,16 @@ def test_even_light_has_no_derivative_by_pose(device: str) -> None:
     assert np.all(np.abs(gradient) < 1e-4)
 
 
+def fisheye_camera() -> rc.Camera:
+    """A few pixels at the border of a fisheye's picture."""
+    lens = rc.Lens.load("fisheye-6mm-220deg").focused(1).stopped_down(8)
+    return rc.Camera(lens, film=rc.Film(0.8, 0.8, (8, 8), shift_mm=(11.1, 0.7)), exposure_time_s=1.0)
+
+
 def test_even_light_has_none_at_a_fisheyes_border(device: str) -> None:
     """Interior and boundary cancel. Rays that leave the steep first surface by its rim, 110 degrees from the axis,
     cross the rim's plane on the other side of the rim."""
-    lens = rc.Lens.load("fisheye-6mm-220deg").focused(1).stopped_down(8)
-    camera = rc.Camera(lens, film=rc.Film(0.8, 0.8, (8, 8), shift_mm=(11.1, 0.7)), exposure_time_s=1.0)
+    camera = fisheye_camera()
     parameters = ["right_m", "backward_m"]
     found, error = estimate(
         lambda seed: rc.render_gradient(
@@ -224,6 +232,59 @@ def test_even_light_has_none_at_a_fisheyes_border(device: str) -> None:
     )
     # The boundary of one of the two parameters alone is many standard errors: the test can fail.
     assert abs(1000 * boundary[8]) > 20 * error[1]
+
+
+@pytest.mark.parametrize("camera", [lambda: corner_camera(2.2), fisheye_camera])
+def test_the_scale_of_rims_equals_differences(camera: Callable[[], rc.Camera], device: str) -> None:
+    """In even light, all of it comes from the boundary. When the rim of the fisheye's steep first surface grows, it also
+    moves along z."""
+    family, step = rc.CameraParameters(camera(), "rim_scale"), 1e-3
+    found, error = estimate(
+        lambda seed: family.gradient(sky(), [1], np.ones((8, 8, 3)), spp=1, outline_spp=128, seed=seed, device=device)
+    )
+
+    def of_seed(seed: int) -> NDArray[np.float64]:
+        above, below = (family.render(sky(), [1 + h], spp=1024, seed=seed, device=device) for h in (step, -step))
+        return np.asarray((above.astype(float) - below).sum() / (2 * step))
+
+    wanted, wanted_error = estimate(of_seed)
+    # The error of the step is of the order of its square.
+    assert abs(found[0] - wanted) < ERRORS * np.hypot(error[0], wanted_error) + 1e-5 * wanted
+    assert found[0] > 50 * max(error[0], wanted_error)
+
+
+def window_camera(shift_mm: float) -> rc.Camera:
+    """A stop of 5 mm radius 40 mm in front of the film, and a window of 4 mm radius 30 mm in front of it."""
+    stop = rc.Stop(clear_semi_diameter_mm=5.0, thickness_mm=10.0)
+    window = rc.Surface(type="aperture", clear_semi_diameter_mm=4.0)
+    lens = rc.Lens(surfaces=[stop, window], film_distance_mm=30.0)
+    return rc.Camera(lens, film=rc.Film(0.04, 0.04, (4, 4), shift_mm=(shift_mm, 0)), exposure_time_s=1.0)
+
+
+@pytest.mark.parametrize("field_mm", [0.0, 2.0, 6.0, 12.0, 20.0])
+def test_the_area_of_a_cats_eye_grows_with_the_rims(field_mm: float, device: str) -> None:
+    """Seen from the film, the window is a circle in the plane of the stop. Even light gains the directions behind its
+    arc within the stop."""
+    found, error = estimate(
+        lambda seed: rc.render_gradient(
+            sky(),
+            window_camera(field_mm),
+            "rim_scale",
+            np.ones((4, 4, 3)),
+            spp=16,
+            outline_spp=64,
+            seed=seed,
+            device=device,
+        )
+    )
+    centre, radius = -field_mm * (40 / 30 - 1), 4.0 * 40 / 30
+    angle = 2 * np.pi * (np.arange(200_000) + 0.5) / 200_000
+    x, y = centre + radius * np.cos(angle), radius * np.sin(angle)
+    squared_cosine = 1 / (1 + ((x - field_mm) ** 2 + y**2) / 40**2)
+    gain = 2 * np.pi * radius**2 * np.mean((x**2 + y**2 < 5**2) * squared_cosine**2) / 40**2
+    # The field varies by 0.04 mm over the picture, about a mean that is exact to second order.
+    assert abs(found[0] - 48 * gain) <= ERRORS * error[0] + 1e-4 * 48 * gain
+    assert error[0] <= 0.05 * 48 * gain
 
 
 def tilted() -> rc.Camera:
@@ -317,6 +378,9 @@ def test_rings_at_their_ends_are_refused() -> None:
         rc.render_gradient(sky(), wide_open, "focus_distance_m", ADJOINT)
     with pytest.raises(rc.InputError, match="needs a zoom lens"):
         rc.render_gradient(sky(), camera, "focal_length_mm", ADJOINT)
+    hole = rc.Lens(surfaces=[rc.Stop(clear_semi_diameter_mm=0.1)], film_distance_mm=20.0)
+    with pytest.raises(rc.InputError, match="rim_scale needs a surface besides the stop"):
+        rc.render_gradient(sky(), camera.replace(lens=hole), "rim_scale", ADJOINT)
     zoom = zoom_camera()
     with pytest.raises(rc.InputError, match="at the ends of the zoom range"):
         shortest = zoom.lens.zoomed(0).stopped_down(8)

@@ -416,7 +416,8 @@ TEST_CASE("points of the pupil's outline that are searched on one line are those
             if (!(b.t > 0)) continue;
             ++found;
             CHECK(a.surface == b.surface);
-            CHECK(a.stop_rate == b.stop_rate);
+            CHECK(a.stop_rate == doctest::Approx(b.stop_rate).epsilon(1e-12));
+            CHECK(a.rim_rate == doctest::Approx(b.rim_rate).epsilon(1e-6));
             CHECK(length(a.tangent - b.tangent) < 1e-7 * length(b.tangent));
             CHECK(a.inverse_speed == doctest::Approx(b.inverse_speed).epsilon(1e-6));
             CHECK(length(a.direction - b.direction) < 1e-7);
