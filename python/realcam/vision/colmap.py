@@ -6,6 +6,8 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
+
 from .._core import Camera, Film, InputError, Lens
 from ..calibration.formats.colmap import camera_text
 from ..calibration.formats.colmap_images import HEADS, image_text, pose_text, text_content
@@ -15,7 +17,7 @@ from .conventions import relative_pose
 from .fit import fit_camera_model
 from .models import model_named
 
-NAMES = {
+COLMAP_MODELS = {
     "pinhole": "PINHOLE",
     "opencv4": "OPENCV",
     "opencv5": "FULL_OPENCV",
@@ -33,14 +35,14 @@ def save_colmap(folder: str | os.PathLike[str], pictures: Mapping[str, Camera], 
 
     Raises InputError, ImageFileError.
     """
-    fits = _Fits(model)
+    lines = _CameraLines(model)
     ids: dict[_CameraKey, int] = {}
     images = []
     for i, (name, camera) in enumerate(pictures.items(), start=1):
         camera_id = ids.setdefault(_key_of(camera), len(ids) + 1)
         images.append(image_text(i, turned(*camera.world_to_camera), camera_id, name))
-        fits.line_of(camera)
-    _write(folder, [f"{i} {fits.lines[key]}" for key, i in ids.items()], images, {})
+        lines.line_of(camera)
+    _write(folder, [f"{i} {lines.by_camera[key]}" for key, i in ids.items()], images, {})
 
 
 def save_colmap_of_rig(
@@ -49,14 +51,14 @@ def save_colmap_of_rig(
     """Writes the files of save_colmap for a rigid rig, plus rigs.txt and frames.txt (COLMAP 3.12 and later).
 
     moments: moments[m][c] is the camera c of the rig at the moment m; its picture's path is "c/m". All moments have the
-    same cameras. model: as for save_colmap. The first camera is COLMAP's reference sensor. Raises InputError and
-    ImageFileError.
+    same cameras, with the same lenses and films, at the same poses in the rig. model: as for save_colmap. The first
+    camera is COLMAP's reference sensor. Raises InputError and ImageFileError.
     """
-    fits = _Fits(model)
+    lines = _CameraLines(model)
     rig = next(iter(moments.values()), {})
     if not rig:
         raise InputError("a COLMAP model of a rig needs the pictures of at least one pose")
-    cameras = [f"{i} {fits.line_of(camera)}" for i, camera in enumerate(rig.values(), start=1)]
+    cameras = [f"{i} {lines.line_of(camera)}" for i, camera in enumerate(rig.values(), start=1)]
     first, *others = (camera.world_to_camera for camera in rig.values())
     placed = [turned(*relative_pose(pose, first)) for pose in others]
     sensors = [f"CAMERA {i} 1 {pose_text(pose)}" for i, pose in enumerate(placed, start=2)]
@@ -65,12 +67,19 @@ def save_colmap_of_rig(
     for moment, members in moments.items():
         if members.keys() != rig.keys():
             raise InputError(f"moment {moment!r} has the cameras {list(members)}; the first one has {list(rig)}")
+        for name, camera in rig.items():
+            if _key_of(members[name]) != _key_of(camera):
+                raise InputError(f"moment {moment!r}: camera {name!r} has another lens or film than in the first one")
         poses = [members[name].world_to_camera for name in rig]
-        data = []
+        for name, pose, expected in zip(list(rig)[1:], poses[1:], placed, strict=True):
+            # Poses are metres and cosines; beyond rounding, 1e-6 of either is a motion.
+            if np.abs(turned(*relative_pose(pose, poses[0])) - expected).max() > 1e-6:
+                raise InputError(f"moment {moment!r}: camera {name!r} has moved in the rig, which must be rigid")
+        picture_ids = []
         for i, (name, pose) in enumerate(zip(rig, poses, strict=True), start=1):
             images.append(image_text(len(images) + 1, turned(*pose), i, f"{name}/{moment}"))
-            data.append(f"CAMERA {i} {len(images)}")
-        frames.append(f"{len(frames) + 1} 1 {pose_text(turned(*poses[0]))} {len(data)} {' '.join(data)}")
+            picture_ids.append(f"CAMERA {i} {len(images)}")
+        frames.append(f"{len(frames) + 1} 1 {pose_text(turned(*poses[0]))} {len(picture_ids)} {' '.join(picture_ids)}")
     rigs = [" ".join([f"1 {len(cameras)} CAMERA 1", *sensors])]
     _write(folder, cameras, images, {"rigs.txt": (_RIGS, rigs), "frames.txt": (_FRAMES, frames)})
 
@@ -87,22 +96,24 @@ def _key_of(camera: Camera) -> _CameraKey:
     return camera.lens, camera.film, camera.model
 
 
-class _Fits:
+class _CameraLines:
     """Lines of cameras.txt, cached for each combination of lens, film and camera model. Raises InputError."""
 
     def __init__(self, model: str) -> None:
-        if model not in NAMES:
+        if model not in COLMAP_MODELS:
             model_named(model)  # raises for an unknown name
-            raise InputError(f"COLMAP has no camera model {model}; expected one of {', '.join(NAMES)}")
+            raise InputError(f"COLMAP has no camera model {model}; expected one of {', '.join(COLMAP_MODELS)}")
         self._model = model
-        self.lines: dict[_CameraKey, str] = {}
+        self.by_camera: dict[_CameraKey, str] = {}
 
     def line_of(self, camera: Camera) -> str:
         """Returns the line of a camera without its id; fits the camera model if no equal camera has been fitted."""
         key = _key_of(camera)
-        if key not in self.lines:
-            self.lines[key] = camera_text(fit_camera_model(camera, self._model).calibration, NAMES[self._model])
-        return self.lines[key]
+        if key not in self.by_camera:
+            self.by_camera[key] = camera_text(
+                fit_camera_model(camera, self._model).calibration, COLMAP_MODELS[self._model]
+            )
+        return self.by_camera[key]
 
 
 def _write(
