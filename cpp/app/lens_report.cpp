@@ -206,7 +206,7 @@ std::vector<std::string> zoom_lines(const LensSystem& lens) {
         const LensSystem zoomed = at_zoom_position(lens, static_cast<int>(i));
         const FirstOrder data = first_order(zoomed, lens.wavelength_nm);
         lines.push_back(lens.zoom.positions[i].name + ": " + fixed_point(data.effective_focal_length) + " mm f/" +
-                        number_text(data.f_number) + (static_cast<int>(i) == lens.zoom.current ? ", this one" : ""));
+                        number_text(data.f_number) + (static_cast<int>(i) == lens.zoom.current ? " (current)" : ""));
     }
     return lines;
 }

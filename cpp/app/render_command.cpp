@@ -132,7 +132,7 @@ public:
             take_and_write(tools, shot, request, plan_summary, options_.outputs, keeps_partial_picture);
         if (!options_.is_quiet || options_.as_json) std::fputs(report.c_str(), stdout);
         if (Interrupt::signal() != 0)
-            throw Interrupted{Interrupt::signal(), "; the picture has the samples that were taken until then"};
+            throw Interrupted{Interrupt::signal(), "; the picture contains the samples taken so far"};
     }
 
     /// Prints which effects the planner chooses for the shot, without rendering it.

@@ -54,7 +54,7 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
                      std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels of " +
                      std::to_string(image.spp) + (image.spp == 1 ? " sample" : " samples"));
     line("exposure", exposure_text(camera.exposure_time_s) + ", ISO " + number_text(camera.iso) +
-                         (shot.is_metered ? " (metered: the average lands on middle grey)" : ""));
+                         (shot.is_metered ? " (metered: the average becomes middle grey)" : ""));
     const std::vector<std::string> effects = names_of(settings.effects);
     if (!effects.empty()) {
         std::string names;
@@ -191,7 +191,7 @@ std::string SamplingNotice::duration_notice() {
     const double expected_s = elapsed_s_ / fraction_;
     if (expected_s < kMinAnnounced_s) return "";
     const std::string duration = "about " + duration_text(expected_s);
-    if (expected_s <= goal_.seconds) return "that is expected to take " + duration;
+    if (expected_s <= goal_.seconds) return "this is expected to take " + duration;
     return "that would take " + duration + "; the picture ends after " + duration_text(goal_.seconds);
 }
 

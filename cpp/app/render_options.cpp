@@ -37,7 +37,7 @@ void add_shot_options(CLI::App& command, RenderOptions& options) {
         .add_option(
             "SCENE", options.scene,
             "The scene: .obj (with .mtl), .gltf, .glb, .ply or .usd; or a shot file: .toml, whose values apply to "
-            "all options that are not given")
+            "all options that are not specified")
         ->type_name("SCENE")
         ->check(not_empty())
         ->required();

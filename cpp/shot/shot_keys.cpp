@@ -187,7 +187,7 @@ std::vector<ShotKey> camera_and_scene_keys() {
          "double-gauss-50mm", {"zoom", "focal_length_mm"}, to_lens},
          "A name with a / or a dot is that of a file."),
         {"zoom", "--zoom", kCamera, "NAME", text, "the name of a zoom position of the lens",
-         "Zoom position, by its name in `realcam lens info`", "as the lens's file gives it", {"focal_length_mm"},
+         "Zoom position, by its name in `realcam lens info`", "that of the lens's file", {"focal_length_mm"},
          to_text<&R::zoom>},
         {"focal_length_mm", "--focal-length", kCamera, "MM", number, kNumber,
          "Focal length of a zoom lens, between those of its positions", "that of the zoom position", {"zoom"},

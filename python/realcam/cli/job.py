@@ -58,7 +58,10 @@ def make(
     farm: FarmOptions,
     device: options.Device = "auto",
     frames: Annotated[
-        range | None, options.parsed(options.frame_numbers, "--frames", "A-B", "Frames of a video, 1-240 or 1-240x2")
+        range | None,
+        options.parsed(
+            options.frame_numbers, "--frames", "A-B", "Frames of a video: 1-240, or 1-240x10 for every tenth"
+        ),
     ] = None,
     fps: Fps = 24.0,
     tile: Annotated[

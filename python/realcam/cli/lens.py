@@ -54,7 +54,7 @@ def draw(
     name: lens_options.LensName,
     *,
     output: Annotated[
-        Path | None, options.output("A .svg, .pdf, .png, .jpg, .tif or .webp file [LENS.svg, here]")
+        Path | None, options.output("A .svg, .pdf, .png, .jpg, .tif or .webp file [LENS.svg in the current folder]")
     ] = None,
     rings: lens_options.Rings,
     plane: Annotated[
@@ -130,7 +130,7 @@ def photo(
             options.seconds,
             "--exposure-time",
             "TIME",
-            "Exposure time in seconds, 1/125 or 0.008; prints exposure values, too",
+            "Exposure time in seconds, such as 1/125; prints exposure values, too",
         ),
     ] = None,
     iso: Annotated[

@@ -115,7 +115,7 @@ class Look:
     """Options for drawing lenses."""
 
     wavelengths: Annotated[
-        Sequence[float] | None, wavelengths_option("Wavelengths of the rays in nm: 486,588,656 [the lens's]")
+        Sequence[float] | None, wavelengths_option("Wavelengths of the rays in nm, separated by commas [the lens's]")
     ] = None
     radius_colours: Annotated[
         bool,

@@ -118,7 +118,7 @@ def plot(
 def report(
     name: lens_options.LensName,
     *,
-    output: Annotated[Path | None, options.output("A .pdf or .html file [LENS.pdf, here]")] = None,
+    output: Annotated[Path | None, options.output("A .pdf or .html file [LENS.pdf in the current folder]")] = None,
     rings: lens_options.Rings,
     file: lens_options.File,
     fields: Fields = None,

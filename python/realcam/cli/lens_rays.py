@@ -23,7 +23,8 @@ def rays(
     rings: lens_options.Rings,
     count: Annotated[int, typer.Option("--rays", metavar="N", help="Number of rays, including blocked ones")] = 20000,
     wavelengths: Annotated[
-        Sequence[float] | None, lens_options.wavelengths_option("Wavelengths of the rays [the design wavelength]")
+        Sequence[float] | None,
+        lens_options.wavelengths_option("Wavelengths of the rays in nm, separated by commas [the design wavelength]"),
     ] = None,
     file: lens_options.File,
     quiet: options.Quiet = False,

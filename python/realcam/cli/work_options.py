@@ -42,10 +42,10 @@ Scheduler = Annotated[
 class FarmOptions:
     """Options for files that start the tasks of a render farm, for grouped()."""
 
-    sbatch: Annotated[Path | None, typer.Option(metavar="FILE", help="Also write a script for Slurm's sbatch")] = None
-    qsub: Annotated[Path | None, typer.Option(metavar="FILE", help="Also write a script for the qsub of PBS")] = None
+    sbatch: Annotated[Path | None, typer.Option(metavar="FILE", help="Write a script for Slurm's sbatch")] = None
+    qsub: Annotated[Path | None, typer.Option(metavar="FILE", help="Write a script for the qsub of PBS")] = None
     openjd: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Also write a template of Open Job Description, .json")
+        Path | None, typer.Option(metavar="FILE", help="Write a template of Open Job Description, .json")
     ] = None
     tasks: Annotated[
         int, typer.Option(metavar="N", help="Number of processes that these files start", min=1, max=100000)

@@ -122,7 +122,7 @@ def test_commands(seq, tmp_path, command):
     assert refused.stderr.count("\n") == 1
     info = command("lens", "info", path, "--glass", "XY=1.6,50", "--zoom", "tele")
     assert info.returncode == 0, info.stderr
-    assert re.search(r"tele: .*this one", info.stdout)
+    assert re.search(r"tele: .*current", info.stdout)
     out = tmp_path / "mine.toml"
     done = command("lens", "convert", path, "-o", out, "--glass", "XY=1.6,50", "--zoom", "tele")
     assert done.returncode == 0, done.stderr

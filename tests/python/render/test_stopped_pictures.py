@@ -105,7 +105,7 @@ def test_ctrl_c_writes_the_picture(program: list[str], tmp_path: Path) -> None:
     assert code == 130
     # On a busy machine the signal may come before the noise can be measured.
     assert "it was stopped; the noise is " in said or "it was stopped; too few samples" in said
-    assert said.endswith("realcam: stopped; the picture has the samples that were taken until then\n")
+    assert said.endswith("realcam: stopped; the picture contains the samples taken so far\n")
     for file in files:
         assert read(file).shape[:2] == (64, 96)
 
