@@ -236,8 +236,8 @@ def test_even_light_has_none_at_a_fisheyes_border(device: str) -> None:
 
 @pytest.mark.parametrize("camera", [lambda: corner_camera(2.2), fisheye_camera])
 def test_the_scale_of_rims_equals_differences(camera: Callable[[], rc.Camera], device: str) -> None:
-    """In even light, all of it comes from the boundary. When the rim of the fisheye's steep first surface grows, it also
-    moves along z."""
+    """In even light, all of it comes from the boundary. When the rim of the fisheye's steep first surface grows, it
+    also moves along z."""
     family, step = rc.CameraParameters(camera(), "rim_scale"), 1e-3
     found, error = estimate(
         lambda seed: family.gradient(sky(), [1], np.ones((8, 8, 3)), spp=1, outline_spp=128, seed=seed, device=device)
