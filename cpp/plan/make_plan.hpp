@@ -40,7 +40,7 @@ inline Plan make_plan(Session& session, const Assembly& scene, const Camera& cam
         lens_errors(full_setup.view({0, 0, 0}), ideal_setup.view({0, 0, 0}), full.lens, facts, tracer);
     Plan plan = plan_shot(camera, errors, facts, settings);
     plan_bounces(session, scene, full, settings, plan, progress);
-    plan_air(session, scene, full, settings, plan, progress);
+    plan_media(session, scene, full, settings, plan, progress);
     if (measures_times) measure_times(session, scene, camera, settings, plan, progress);
     return plan;
 }

@@ -1,9 +1,12 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "../camera/film/develop.hpp"
@@ -77,10 +80,55 @@ struct SmallShot {
     }
 };
 
+/// True if a material has an interior that scatters light.
+inline bool has_scattering_glass(const Scene& scene) {
+    return std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [](const Material& material) { return material.has_scattering_interior(); });
+}
+
 /// Returns the scene with clear air.
 inline Assembly without_air(const Assembly& scene) {
     return with_static_geometry(scene, [](Scene& changed) { changed.air = {}; });
 }
+
+/// Returns the scene with glass that does not scatter light, but absorbs it as before.
+inline Assembly without_scattering_glass(const Assembly& scene) {
+    Assembly changed = scene;
+    // Instances of one object must share the changed object, too.
+    std::unordered_map<const Scene*, std::shared_ptr<const Scene>> changed_parts;
+    const auto change = [&](std::shared_ptr<const Scene>& part) {
+        if (!has_scattering_glass(*part)) return;
+        std::shared_ptr<const Scene>& result = changed_parts[part.get()];
+        if (!result) {
+            auto copy = std::make_shared<Scene>(*part);
+            for (Material& material : copy->materials) material.scattering = {0, 0, 0};
+            result = std::move(copy);
+        }
+        part = result;
+    };
+    change(changed.static_geometry);
+    for (Instance& instance : changed.instances) change(instance.object);
+    return changed;
+}
+
+/// Scattering medium that the planner measures by rendering the scene without it.
+struct PlannedMedium {
+    const char* name;  ///< PlanDecision::name
+    const char* subject;  ///< of the sentence about it
+    bool (*is_in)(const Assembly&);
+    Assembly (*without)(const Assembly&);
+};
+
+inline constexpr std::array<PlannedMedium, 2> kPlannedMedia = {
+    {{"air", "the air changes", [](const Assembly& scene) { return scene.static_geometry->air.is_present(); },
+      without_air},
+     {"scattering_glass", "scattering in glass changes",
+      [](const Assembly& scene) {
+          return has_scattering_glass(*scene.static_geometry) ||
+                 std::any_of(scene.instances.begin(), scene.instances.end(),
+                             [](const Instance& instance) { return has_scattering_glass(*instance.object); });
+      },
+      without_scattering_glass}}};
 
 }  // namespace plan_bounces_detail
 
@@ -118,19 +166,22 @@ inline void plan_bounces(Session& session, const Assembly& scene, const Camera& 
                                      " (half the threshold is allowed), with direct light alone " + codes(indirect)});
 }
 
-/// Adds the change of the picture by the air, if there is any, with the plan's number of bounces. `settings`: those of
-/// the picture. Throws the errors of take_picture.
-inline void plan_air(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
-                     Plan& plan, const Progress& progress) {
+/// Adds the changes of the picture by the air and by glass that scatters light, if there are any, with the plan's
+/// number of bounces. `settings`: those of the picture. Throws the errors of take_picture.
+inline void plan_media(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                       Plan& plan, const Progress& progress) {
     using namespace plan_bounces_detail;
-    if (!scene.static_geometry->air.is_present()) return;
     const SmallShot small(camera, settings);
-    const auto of = [&](const Assembly& with_air) {
-        return small_picture(session, with_air, small.camera, small.settings, plan.max_bounces, progress);
+    const auto of = [&](const Assembly& shown) {
+        return small_picture(session, shown, small.camera, small.settings, plan.max_bounces, progress);
     };
-    const double change = largest_difference(of(scene), of(without_air(scene)));
-    plan.decisions.push_back({"air", change, SizeUnit::codes, settings.thresholds.codes, true, DecidedBy::user,
-                              std::nullopt, "the air changes the picture by " + counted(change, "code", 2)});
+    for (const PlannedMedium& medium : kPlannedMedia) {
+        if (!medium.is_in(scene)) continue;
+        const double change = largest_difference(of(scene), of(medium.without(scene)));
+        plan.decisions.push_back({medium.name, change, SizeUnit::codes, settings.thresholds.codes, true,
+                                  DecidedBy::user, std::nullopt,
+                                  medium.subject + (" the picture by " + counted(change, "code", 2))});
+    }
 }
 
 namespace measure_times_detail {
@@ -200,8 +251,11 @@ inline void measure_times(Session& session, const Assembly& scene, Camera camera
             settings.max_bounces = plan.max_bounces;
             continue;
         }
-        if (plan.decisions[k].name == "air") {
-            set_scene(plan_bounces_detail::without_air(scene), no_effects);
+        const auto& media = plan_bounces_detail::kPlannedMedia;
+        const auto medium =
+            std::find_if(media.begin(), media.end(), [&](const auto& m) { return m.name == plan.decisions[k].name; });
+        if (medium != media.end()) {
+            set_scene(medium->without(scene), no_effects);
             plan.decisions[k].time = std::max(base_s / shortest_run_s(session, spp, progress) - 1, 0.0);
             continue;
         }

@@ -6,12 +6,11 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Homogeneous participating medium, such as fog, that fills the space outside of glass. Scatters by the phase function
-/// of Henyey and Greenstein (1941).
+/// Air as specified by the user: a medium (Medium), such as fog, that fills the space outside of glass.
 struct Air {
     Color extinction = {0, 0, 0};  ///< extinction coefficient per metre; black: no air
     Color albedo = {1, 1, 1};  ///< fraction of the extinction that is scattering, 0 to 1
-    float anisotropy = 0.8f;  ///< mean cosine of the scattering angle; positive: forward
+    float anisotropy = 0.8f;  ///< Medium::anisotropy
     /// Distance by which the air extends beyond the bounding box of the scene's geometry, in metres. std::nullopt:
     /// unlimited or, if light comes from infinity, half of the visibility.
     std::optional<double> margin_m = {};

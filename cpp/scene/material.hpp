@@ -4,6 +4,7 @@
 
 #include "../math/color.hpp"
 #include "../math/vec3.hpp"
+#include "medium.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -67,7 +68,9 @@ struct Material {
     float ior = 1.5f;  ///< refractive index of the interior
     float transmission = 0;  ///< fraction of the dielectric part that transmits light, 0 to 1
     Color filter = {1, 1, 1};  ///< factor of transmitted light (MTL Tf); metallic_roughness uses the base colour
-    Color absorption = {0, 0, 0};  ///< of the interior, per metre (KHR_materials_volume)
+    Color absorption = {0, 0, 0};  ///< absorption coefficient of the interior, per metre (KHR_materials_volume)
+    Color scattering = {0, 0, 0};  ///< scattering coefficient of the interior, per metre
+    float scattering_anisotropy = 0;  ///< Medium::anisotropy of the interior
     std::int32_t is_thin = 0;  ///< not 0: thin-walled, without an interior; transmitted rays are not refracted
 
     // phong
@@ -97,6 +100,10 @@ struct Material {
 
     constexpr bool operator==(const Material&) const = default;
 
+    /// Returns the medium behind the surface; meaningful if the material transmits light and is not thin.
+    constexpr Medium interior() const { return {absorption + scattering, scattering, scattering_anisotropy}; }
+    /// True if the material has an interior that scatters light.
+    constexpr bool has_scattering_interior() const { return transmission > 0 && is_thin == 0 && !is_black(scattering); }
     /// True if the surface emits light.
     constexpr bool emits() const { return !is_black(emission); }
     /// True for an opaque surface with Lambertian and Phong lobes and emission on one side, with no texture except for
@@ -124,8 +131,8 @@ inline constexpr std::array<TextureReference Material::*, 11> kMaterialTextures 
 /// Features that a scene requires of the kernels; kernels are compiled for each kind, because unused features cost
 /// speed.
 enum class SceneKind : std::int32_t {
-    plain,  ///< all materials are plain (Material::is_plain), no vertex colours, no motion, no air
-    opaque,  ///< no material has holes (Material::has_holes), no motion, no air
+    plain,  ///< all materials are plain (Material::is_plain), no vertex colours, no motion, no scattering medium
+    opaque,  ///< no material has holes (Material::has_holes), no motion, no scattering medium
     any,  ///< no restriction
 };
 

@@ -76,7 +76,7 @@ void check_parent(const Assembly& scene, std::size_t instance) {
 std::string air_error(const Air& air) {
     if (!is_between_0_and(air.extinction, 1e6f)) return "the air's extinction must lie between 0 and 1e6 per metre";
     if (!is_between_0_and(air.albedo, 1)) return "the air's albedo must lie between 0 and 1";
-    if (!(std::fabs(air.anisotropy) <= 0.99f)) return "the air's anisotropy must lie between -0.99 and 0.99";
+    if (!(std::fabs(air.anisotropy) <= kMaxAnisotropy)) return "the air's anisotropy must lie between -0.99 and 0.99";
     if (air.margin_m && !(*air.margin_m >= 0 && *air.margin_m <= 1e12))
         return "the air's margin must lie between 0 and 1e12 m";
     return "";
@@ -180,7 +180,11 @@ private:
             require(is_between_0_and(m.filter, 1.0f), "material", i,
                     "the factor of transmitted light must lie between 0 and 1");
             require(is_reflectance(m.mirror), "material", i, "mirror reflectance must be finite and not negative");
-            require(is_reflectance(m.absorption), "material", i, "absorption must be finite and not negative");
+            require(is_reflectance(m.absorption) && is_reflectance(m.scattering) &&
+                        is_reflectance(m.absorption + m.scattering),
+                    "material", i, "absorption, scattering and their sum must be finite and not negative");
+            require(std::fabs(m.scattering_anisotropy) <= kMaxAnisotropy, "material", i,
+                    "the anisotropy of scattering must lie between -0.99 and 0.99");
             require(m.ior >= 0 && m.ior <= 1000, "material", i, "the refractive index must lie between 0 and 1000");
             for (const float v : {m.transmission, m.metallic, m.roughness, m.specular_weight, m.clearcoat,
                                   m.clearcoat_roughness, m.opacity, m.opacity_cutoff})

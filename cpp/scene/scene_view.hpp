@@ -119,11 +119,8 @@ struct VertexColor {
     constexpr bool operator==(const VertexColor&) const = default;
 };
 
-/// Homogeneous participating medium that fills a box, except for the interiors of glass (Air).
-struct AirView {
-    Color extinction = {0, 0, 0};  ///< per metre; black: no air
-    Color scattering = {0, 0, 0};  ///< scattering coefficient per metre
-    float anisotropy = 0;  ///< mean cosine of the scattering angle
+/// Medium that fills a box, except for the interiors of glass (Air). A black extinction stands for clear air.
+struct AirView : Medium {
     Vec3f low = {0, 0, 0}, high = {0, 0, 0};  ///< corners of the box; -kFarAway and kFarAway: unlimited
 
     REALCAM_INLINE bool is_present() const { return !is_black(extinction); }
@@ -175,6 +172,7 @@ struct InstancesView {
     const float* leaf_probabilities;  ///< for the same lights: probability of the light within its leaf
     std::int32_t instance_count, key_count, point_count, area_count, light_node_count, leaf_light_count;
     AirView air;
+    bool has_scattering_media;  ///< true if there is air, or any material has an interior that scatters light
 };
 
 /// Complete scene: static geometry, objects in frames of their own, and lights.

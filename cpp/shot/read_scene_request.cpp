@@ -68,9 +68,10 @@ public:
 private:
     /// Rejects keys other than these and those that both material models have.
     void allow(std::vector<std::string_view> keys) const {
-        for (const char* common : {"model", "texture", "emission", "emission_texture", "double_sided", "transmission",
-                                   "transmission_texture", "ior", "absorption", "thin", "opacity", "opacity_cutoff",
-                                   "opacity_texture", "normal_map", "normal_scale"})
+        for (const char* common :
+             {"model", "texture", "emission", "emission_texture", "double_sided", "transmission",
+              "transmission_texture", "ior", "absorption", "scattering", "scattering_anisotropy", "thin", "opacity",
+              "opacity_cutoff", "opacity_texture", "normal_map", "normal_scale"})
             keys.emplace_back(common);
         table_.allow(keys);
     }
@@ -118,6 +119,8 @@ private:
         texture("specular_texture", &Material::specular_texture);
         number("ior", m_.ior);
         color("absorption", m_.absorption);
+        color("scattering", m_.scattering);
+        number("scattering_anisotropy", m_.scattering_anisotropy);
         m_.is_thin = table_.flag("thin");
         number("opacity", m_.opacity);
         number("opacity_cutoff", m_.opacity_cutoff);

@@ -2707,6 +2707,8 @@ class Material:
         transmission: float = 0.0,
         ior: float = 1.5,
         absorption: _Triple = [0.0, 0.0, 0.0],
+        scattering: _Triple = [0.0, 0.0, 0.0],
+        scattering_anisotropy: float = 0.0,
         thin: bool = False,
         normal_scale: float = 1.0,
         opacity: float = 1.0,
@@ -2731,8 +2733,8 @@ class Material:
           those of clearcoat_normal_map; clearcoat_normal_scale: factor on x and y of that map. clearcoat_texture (red channel)
           and clearcoat_roughness_texture (green channel): factors on clearcoat and clearcoat_roughness.
         specular_weight_texture, clearcoat_texture, clearcoat_roughness_texture and transmission_texture (red channel) are
-        linear. Formats of textures, and absorption, thin, emission, opacity and the other arguments: see Material().
-        Raises InputError.
+        linear. Formats of textures, and absorption, scattering, thin, emission, opacity and the other arguments: see
+        Material(). Raises InputError.
         """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
@@ -2752,6 +2754,8 @@ class Material:
         transmission: float = 0.0,
         ior: float = 1.5,
         absorption: _Triple = [0.0, 0.0, 0.0],
+        scattering: _Triple = [0.0, 0.0, 0.0],
+        scattering_anisotropy: float = 0.0,
         thin: bool = False,
         normal_scale: float = 1.0,
         opacity: float = 1.0,
@@ -2770,8 +2774,10 @@ class Material:
         mirror: specular reflectance at normal incidence.
         fresnel: True: mirror increases towards grazing incidence (Schlick), and a dielectric interface reflects by its index.
         transmission: fraction of the surface, 0 to 1, that is a smooth dielectric interface to a medium inside of index ior.
-          filter: factor on the light that passes the interface. absorption: coefficient inside, per metre. thin: True for a
-          thin film, behind which light continues in its direction.
+          filter: factor on the light that passes the interface. absorption, scattering: coefficients of the interior, per
+          metre, which must be closed by the surface. scattering_anisotropy: mean cosine of the scattering angle there, -0.99 to
+          0.99 (Henyey and Greenstein 1941). thin: True for a thin film without interior, behind which light continues in its
+          direction.
         emission: radiance in cd/m^2, on the side from which a triangle's vertices appear counterclockwise. double_sided: True:
           on both sides.
         texture, specular_texture, emission_texture: factors on diffuse, specular and emission, as arrays (H, W) grey,
@@ -2930,6 +2936,16 @@ class Material:
     def roughness(self) -> float:
         """
         Roughness, 0 to 1; the GGX parameter alpha is its square.
+        """
+    @property
+    def scattering(self) -> tuple[float, float, float]:
+        """
+        Scattering coefficient inside, per metre.
+        """
+    @property
+    def scattering_anisotropy(self) -> float:
+        """
+        Mean cosine of the scattering angle inside.
         """
     @property
     def shadow_catcher(self) -> bool:

@@ -8,7 +8,7 @@
 
 #include "../../embree/lens_rays.hpp"
 #include "../../optics/prescription/lens_checks.hpp"
-#include "../../optics/tolerance/lens_error.hpp"
+#include "../../optics/tolerance/perturbation.hpp"
 #include "../../optics/tolerance/tolerance_evaluator.hpp"
 #include "../bindings.hpp"
 #include "../values/arrays.hpp"

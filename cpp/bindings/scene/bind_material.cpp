@@ -219,6 +219,8 @@ glTF; both describe their properties.)");
         Field{"transmission", &M::transmission, "Fraction of the surface that is a smooth dielectric interface."},
         Field{"ior", &M::ior, "Index of refraction inside."},
         Field{"absorption", &M::absorption, "Absorption coefficient inside, per metre."},
+        Field{"scattering", &M::scattering, "Scattering coefficient inside, per metre."},
+        Field{"scattering_anisotropy", &M::scattering_anisotropy, "Mean cosine of the scattering angle inside."},
         Field{"thin", &M::is_thin, "True for a thin film, behind which light continues in its direction."},
         Field{"normal_scale", &M::normal_scale, "Factor on x and y of the normal map."},
         Field{"opacity", &M::opacity, "Opacity, 0 to 1."},
@@ -274,8 +276,10 @@ diffuse, specular: reflectance of the Lambert lobe and of the Phong lobe. shinin
 mirror: specular reflectance at normal incidence.
 fresnel: True: mirror increases towards grazing incidence (Schlick), and a dielectric interface reflects by its index.
 transmission: fraction of the surface, 0 to 1, that is a smooth dielectric interface to a medium inside of index ior.
-  filter: factor on the light that passes the interface. absorption: coefficient inside, per metre. thin: True for a
-  thin film, behind which light continues in its direction.
+  filter: factor on the light that passes the interface. absorption, scattering: coefficients of the interior, per
+  metre, which must be closed by the surface. scattering_anisotropy: mean cosine of the scattering angle there, -0.99 to
+  0.99 (Henyey and Greenstein 1941). thin: True for a thin film without interior, behind which light continues in its
+  direction.
 emission: radiance in cd/m^2, on the side from which a triangle's vertices appear counterclockwise. double_sided: True:
   on both sides.
 texture, specular_texture, emission_texture: factors on diffuse, specular and emission, as arrays (H, W) grey,
@@ -309,8 +313,8 @@ clearcoat: fraction of the surface, 0 to 1, with a colourless coat of index 1.5 
   those of clearcoat_normal_map; clearcoat_normal_scale: factor on x and y of that map. clearcoat_texture (red channel)
   and clearcoat_roughness_texture (green channel): factors on clearcoat and clearcoat_roughness.
 specular_weight_texture, clearcoat_texture, clearcoat_roughness_texture and transmission_texture (red channel) are
-linear. Formats of textures, and absorption, thin, emission, opacity and the other arguments: see Material().
-Raises InputError.)");
+linear. Formats of textures, and absorption, scattering, thin, emission, opacity and the other arguments: see
+Material(). Raises InputError.)");
         },
         std::tuple_cat(metallic_roughness_arguments, metallic_roughness, both));
     material

@@ -91,14 +91,15 @@ namespace members_detail {
 
 template <class M>
 auto material_members(M& m) {
-    static_assert(count<Material>() == 36, "add the new member of Material to the list below");
+    static_assert(count<Material>() == 38, "add the new member of Material to the list below");
     return std::tie(m.model, m.diffuse, m.specular, m.emission, m.emits_on_both_sides, m.opacity, m.opacity_cutoff,
                     m.only_shadows, m.vertex_opacity, m.vertex_emission, m.opacity_texture, m.diffuse_texture,
-                    m.specular_texture, m.emission_texture, m.ior, m.transmission, m.filter, m.absorption, m.is_thin,
-                    m.shininess, m.mirror, m.fresnel, m.metallic, m.roughness, m.specular_weight, m.clearcoat,
-                    m.clearcoat_roughness, m.metallic_roughness_texture, m.normal_texture, m.normal_scale,
-                    m.transmission_texture, m.specular_weight_texture, m.clearcoat_texture,
-                    m.clearcoat_roughness_texture, m.clearcoat_normal_texture, m.clearcoat_normal_scale);
+                    m.specular_texture, m.emission_texture, m.ior, m.transmission, m.filter, m.absorption, m.scattering,
+                    m.scattering_anisotropy, m.is_thin, m.shininess, m.mirror, m.fresnel, m.metallic, m.roughness,
+                    m.specular_weight, m.clearcoat, m.clearcoat_roughness, m.metallic_roughness_texture,
+                    m.normal_texture, m.normal_scale, m.transmission_texture, m.specular_weight_texture,
+                    m.clearcoat_texture, m.clearcoat_roughness_texture, m.clearcoat_normal_texture,
+                    m.clearcoat_normal_scale);
 }
 
 }  // namespace members_detail

@@ -43,8 +43,8 @@ inline constexpr std::uint32_t time = 4;
 inline constexpr std::uint32_t second_bounce = kJointPairs;
 /// Russian roulette, far beyond the pairs of the last bounce.
 inline constexpr std::uint32_t roulette = 0x10000;
-/// Three pairs for each bounce, for the air (cross_air).
-inline constexpr std::uint32_t air = 0x20000;
+/// Three pairs for each bounce, for the medium around the ray (cross_medium).
+inline constexpr std::uint32_t medium = 0x20000;
 /// Two pairs for diffraction.
 inline constexpr std::uint32_t diffraction = 0x30000;
 

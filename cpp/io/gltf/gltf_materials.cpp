@@ -32,6 +32,7 @@ public:
         read_specular_glossiness(out, extensions["KHR_materials_pbrSpecularGlossiness"]);
         read_transmission(out.transmission, extensions["KHR_materials_transmission"]);
         read_volume(out.volume, extensions["KHR_materials_volume"]);
+        read_volume_scatter(out.volume, extensions["KHR_materials_volume_scatter"]);
         read_clearcoat(out.clearcoat, extensions["KHR_materials_clearcoat"]);
         read_specular(out.specular, extensions["KHR_materials_specular"]);
         read_ior(out.ior, extensions["KHR_materials_ior"]["ior"]);
@@ -55,6 +56,8 @@ public:
         if (!bad_alpha_mode_.empty())
             scene_.warnings.push_back("an alphaMode must be OPAQUE, MASK or BLEND, not " + bad_alpha_mode_ +
                                       "; OPAQUE is used");
+        if (has_scatter_texture_)
+            scene_.warnings.push_back("multiscatterColorTexture is not modelled: volumes are homogeneous");
         if (has_occlusion_)
             scene_.warnings.push_back("occlusionTexture is not modelled: path tracing computes the occlusion");
         if (has_third_set_)
@@ -113,6 +116,13 @@ private:
         has_bad_attenuation_ |= !is_positive;
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
         if (is_positive) read(out.attenuation_distance, distance, {std::numeric_limits<float>::min(), kInfinity});
+    }
+
+    void read_volume_scatter(GltfVolume& out, const Json& json) {
+        read(out.multiscatter_color_factor, json["multiscatterColor"], kUnit);  // name in earlier drafts
+        read(out.multiscatter_color_factor, json["multiscatterColorFactor"], kUnit);
+        read(out.scatter_anisotropy, json["scatterAnisotropy"], {-1, 1});
+        has_scatter_texture_ |= !json["multiscatterColorTexture"].is_null();
     }
 
     void read_clearcoat(GltfClearcoat& out, const Json& json) {
@@ -244,7 +254,7 @@ private:
     std::map<double, std::int32_t> first_of_view_;  // first image of each bufferView
     std::size_t out_of_range_ = 0, bad_transforms_ = 0, bad_samplers_ = 0;
     std::string bad_alpha_mode_;  // the first invalid one, in quotes
-    bool has_occlusion_ = false, has_third_set_ = false, has_bad_attenuation_ = false;
+    bool has_occlusion_ = false, has_third_set_ = false, has_bad_attenuation_ = false, has_scatter_texture_ = false;
 };
 
 }  // namespace

@@ -69,8 +69,8 @@ constexpr std::array kSupported = std::to_array<std::string_view>(
     {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
      "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength", "KHR_materials_ior",
      "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
-     "KHR_materials_unlit", "KHR_materials_volume", "KHR_mesh_quantization", "KHR_meshopt_compression",
-     "KHR_texture_transform"});
+     "KHR_materials_unlit", "KHR_materials_volume", "KHR_materials_volume_scatter", "KHR_mesh_quantization",
+     "KHR_meshopt_compression", "KHR_texture_transform"});
 
 /// Unsupported extensions of materials, for which a warning is given even if the file does not list them.
 constexpr std::array kUnsupportedMaterials =

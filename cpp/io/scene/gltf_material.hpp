@@ -26,12 +26,14 @@ struct GltfTransmission {
     FileTexture texture;  ///< red
 };
 
-/// KHR_materials_volume. Lengths are in units of the file.
+/// KHR_materials_volume and KHR_materials_volume_scatter. Lengths are in units of the file.
 struct GltfVolume {
     float thickness_factor = 0;  ///< in the mesh's coordinates; 0: thin-walled, without interior
     FileTexture thickness_texture;  ///< green
     float attenuation_distance = std::numeric_limits<float>::infinity();  ///< in the scene's coordinates, above 0
     Vec3f attenuation_color = {1, 1, 1};  ///< colour of white light after that distance
+    Vec3f multiscatter_color_factor = {0, 0, 0};  ///< albedo of multiple scattering
+    float scatter_anisotropy = 0;  ///< mean cosine of the scattering angle, -1 to 1
 };
 
 /// KHR_materials_clearcoat.

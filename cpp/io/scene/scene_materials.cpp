@@ -22,6 +22,16 @@ Color unit_range(Vec3f v) {
     return {std::clamp(v.x, 0.0f, 1.0f), std::clamp(v.y, 0.0f, 1.0f), std::clamp(v.z, 0.0f, 1.0f)};
 }
 
+/// Returns the albedo of single scattering of a dense medium whose albedo of multiple scattering is `multiple`, 0 to 1
+/// (Kulla and Conty 2017, "Revisiting physically based shading at Imageworks", slide 44). `anisotropy`: mean cosine of
+/// the scattering angle.
+float single_scattering_albedo(float multiple, float anisotropy) {
+    if (!(multiple > 0)) return 0;  // the fit's rounded coefficients would leave 6e-6
+    const double a = static_cast<double>(multiple), g = static_cast<double>(anisotropy);
+    const double s = 4.09712 + 4.20863 * a - std::sqrt(9.59217 + a * (41.6808 + a * 17.7126));
+    return static_cast<float>(std::clamp((1 - s * s) / (1 - g * s * s), 0.0, 1.0));
+}
+
 /// Colours of the vertices of a material's triangles: whether there are any, and whether any alpha is below 1.
 struct VertexColours {
     bool exist = false, are_transparent = false;
@@ -230,15 +240,25 @@ private:
                 "has a thickness map, which is ignored: light travels to the opposite side of the surface, at the "
                 "distance of the geometry");
         material_.is_thin = from.volume.thickness_factor > 0 ? 0 : 1;
+        if (!material_.is_thin) set_interior(from.volume);
+    }
+
+    void set_interior(const GltfVolume& from) {
         // KHR_materials_volume: white light has the colour attenuationColor after attenuationDistance.
-        const double distance_m = static_cast<double>(from.volume.attenuation_distance) * scale_;
-        const auto absorption = [&](float transmittance) {
+        const double distance_m = static_cast<double>(from.attenuation_distance) * scale_;
+        if (!std::isfinite(distance_m)) return;
+        const auto extinction = [&](float transmittance) {
             const double sigma = -std::log(std::max(static_cast<double>(transmittance), 1e-10)) / distance_m;
             return static_cast<float>(std::clamp(sigma, 0.0, 1e30));
         };
-        const Vec3f color = from.volume.attenuation_color;
-        if (std::isfinite(distance_m) && !material_.is_thin)
-            material_.absorption = {absorption(color.x), absorption(color.y), absorption(color.z)};
+        const Vec3f color = from.attenuation_color, scattered = from.multiscatter_color_factor;
+        material_.scattering_anisotropy = std::clamp(from.scatter_anisotropy, -kMaxAnisotropy, kMaxAnisotropy);
+        const float g = material_.scattering_anisotropy;
+        const Color sum = {extinction(color.x), extinction(color.y), extinction(color.z)};
+        material_.scattering =
+            sum * Color{single_scattering_albedo(scattered.x, g), single_scattering_albedo(scattered.y, g),
+                        single_scattering_albedo(scattered.z, g)};
+        material_.absorption = sum - material_.scattering;
     }
 
     void set_clearcoat(const GltfClearcoat& from) {

@@ -1,4 +1,4 @@
-#include "lens_error.hpp"
+#include "perturbation.hpp"
 
 #include <cmath>
 #include <map>

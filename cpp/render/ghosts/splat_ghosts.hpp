@@ -1,6 +1,6 @@
 #pragma once
 #include "../../camera/models/generate_rays.hpp"
-#include "../../scene/lights/air.hpp"
+#include "../../scene/lights/attenuation.hpp"
 #include "../../scene/lights/light.hpp"
 #include "../path/emitter_hit.hpp"
 #include "ghost_lens_paths.hpp"

@@ -3,7 +3,7 @@
 
 #include "../../camera/effects/rays_with_effects.hpp"
 #include "../../camera/models/generate_rays.hpp"
-#include "cross_air.hpp"
+#include "cross_medium.hpp"
 #include "path_state.hpp"
 #include "scatter_glossy_paths.hpp"
 #include "scatter_plain_paths.hpp"
@@ -38,7 +38,7 @@ REALCAM_INLINE void start_paths(const CameraRays<N>& camera_rays, PathState<N>& 
         path.weight[i] = camera_rays.weight[i];
         path.throughput.set(i, grey(camera_rays.weight[i]));
         path.pdf[i] = kFromFilm;
-        path.absorption.set(i, {0, 0, 0});
+        path.interior[i] = nullptr;
         results.irradiance.set(i, {0, 0, 0});
         results.depth[i] = kFarAway;
         results.weight[i] = camera_rays.weight[i];
@@ -109,25 +109,29 @@ REALCAM_INLINE void set_time_and_number(const PathState<N>& path, int slot, int 
     }
 }
 
-/// Adds the light that the air scatters along each ray, and attenuates the paths or marks them as scattered by the air
-/// (kScatteredByAir). `hits`: of the rays; modified.
+/// Adds the light that the air or scattering glass scatters along each ray, and attenuates the paths or marks them as
+/// scattered by it (kScatteredInMedium). `hits`: of the rays; modified.
 template <int N, class SceneT, class Probe>
-REALCAM_INLINE void cross_air_block(const SceneView& view, const CameraView& camera, const PathSettings& settings,
-                                    const SampleBlock<N>& block, int bounce, SceneT&& scene, Probe&& probe,
-                                    Hits<N>& hits, PathState<N>& path, PathResults<N>& results) {
-    const std::uint32_t dimension = dimension::air + 3 * static_cast<std::uint32_t>(bounce);
+REALCAM_INLINE void cross_media(const SceneView& view, const CameraView& camera, const PathSettings& settings,
+                                const SampleBlock<N>& block, int bounce, SceneT&& scene, Probe&& probe, Hits<N>& hits,
+                                PathState<N>& path, PathResults<N>& results) {
+    const std::uint32_t dimension = dimension::medium + 3 * static_cast<std::uint32_t>(bounce);
     const PathNumbers<N> points(block, path, dimension), lights(block, path, dimension + 1),
         paths(block, path, dimension + 2);
     ShadowRays<N> shadow;
     for (int i = 0; i < N; ++i) shadow.rays.active[i] = 0;
     const int slots = path.slots();
     for (int i = 0; i < slots; ++i) {
-        if (!path.rays.active[i] || !is_black(path.absorption[i])) continue;
+        if (!path.rays.active[i]) continue;
+        const bool is_hit = hits.triangle[i] != kNoTriangle;
+        const Material* interior = path.interior[i];
+        // A ray that leaves the scene from the interior of glass has passed a gap in its surface.
+        if (interior ? !is_hit || !interior->has_scattering_interior() : !view.air.is_present()) continue;
         const int lane = path.lane(i);
         const Vec3f origin = path.rays.origin[i], direction = path.rays.direction[i];
-        const bool is_hit = hits.triangle[i] != kNoTriangle;
-        const AirCrossing crossing = cross_air(
-            view, {origin, direction, is_hit ? hits.distance[i] : kFarAway, path.rays.time[i], path.throughput[i]},
+        const MediumCrossing crossing = cross_medium(
+            view,
+            {origin, direction, is_hit ? hits.distance[i] : kFarAway, path.rays.time[i], path.throughput[i], interior},
             all_lobes_scatter(settings, bounce), {points[i], lights[i], paths[i], block.bits(lane, dimension)});
         if (bounce <= settings.max_bounces && !is_black(crossing.from_light)) {
             const float limit = bounce > 0 ? settings.clamp * path.weight[i] : 0.0f;
@@ -140,7 +144,7 @@ REALCAM_INLINE void cross_air_block(const SceneView& view, const CameraView& cam
         if (bounce == 0 && is_hit)
             results.depth[lane] = shade_hits_detail::depth_at<SceneKind::any>(
                 camera, origin + hits.distance[i] * direction, path.rays.time[i]);
-        hits.triangle[i] = kScatteredByAir;
+        hits.triangle[i] = kScatteredInMedium;
         hits.distance[i] = crossing.scattered_at;
         path.pdf[i] = crossing.density_ratio;
     }
@@ -239,8 +243,8 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     scene.intersect(path.rays, hits);
     probe.enter(RenderStage::other);
     if constexpr (scene_kind == SceneKind::any) {
-        if (view.air.is_present())
-            cross_air_block(view, camera, settings, block, bounce, scene, probe, hits, path, results);
+        if (view.has_scattering_media)
+            cross_media(view, camera, settings, block, bounce, scene, probe, hits, path, results);
     }
     shade_hits<scene_kind>(view, camera, settings, block, bounce, hits, path, results, surfaces);
     // On a GPU this return frees the registers of the values that only continuing paths need.

@@ -76,8 +76,7 @@ struct PathState {
     Vec3Lanes<float, N> receiver_to_eye;  ///< LightLobe::to_eye; the lobe is unused for SceneKind::plain
     Lanes<float, N> receiver_alpha, receiver_share;  ///< LightLobe::alpha and LightLobe::share
     Lanes<SkySampling, N> receiver_sky;  ///< sampling of the environment there; set for SceneKind::any only
-    ColorLanes<N> absorption;  ///< absorption of the glass around the ray, per metre (interior_absorption); black
-                               ///< outside of glass
+    Lanes<const Material*, N> interior;  ///< material of the glass around the ray; null outside of glass
 
     REALCAM_INLINE PathState() {
         REALCAM_LANES
@@ -107,7 +106,7 @@ struct PathState {
             rays.direction.set(to, rays.direction[from]);
             throughput.set(to, throughput[from]);
             weight[to] = weight[from];
-            if constexpr (scene_kind != SceneKind::plain) absorption.set(to, absorption[from]);
+            if constexpr (scene_kind != SceneKind::plain) interior[to] = interior[from];
             if constexpr (scene_kind == SceneKind::any) {
                 rays.time[to] = rays.time[from];
                 rays.number[to] = rays.number[from];

@@ -27,9 +27,9 @@ struct GlossySurfaces {
         set(slot, is_glossy[slot] ? glossy_surface(point) : GlossySurface{});
         if (!is_glossy[slot]) others.set(slot, point);
     }
-    /// See Surfaces::set_air.
-    REALCAM_INLINE void set_air(int slot, Vec3f at, Vec3f direction) {
-        others.set_air(slot, at, direction);
+    /// See Surfaces::set_scattering_point.
+    REALCAM_INLINE void set_scattering_point(int slot, Vec3f at, Vec3f direction) {
+        others.set_scattering_point(slot, at, direction);
         position.set(slot, at);
         geometric_normal.set(slot, -direction);
         normal.set(slot, -direction);
@@ -102,11 +102,11 @@ struct SampledLobes {
 
 /// attenuate_light for all slots.
 template <int N>
-REALCAM_INLINE void attenuate_lights(const AirView& air, const GlossySurfaces<N>& surfaces, const PathState<N>& path,
+REALCAM_INLINE void attenuate_lights(const SceneView& view, const GlossySurfaces<N>& surfaces, const PathState<N>& path,
                                      LightSamples<N>& lights) {
     for (int i = 0; i < path.count; ++i) {
         LightSample light = lights[i];
-        attenuate_light<SceneKind::any>(air, surfaces[i], path, i, light);
+        attenuate_light<SceneKind::any>(view, surfaces[i], nullptr, path, i, light);
         lights.irradiance.set(i, light.irradiance);
     }
 }
@@ -201,7 +201,7 @@ REALCAM_INLINE void scatter_glossy_paths(const SceneView& view, const PathSettin
         LightSamples<N> lights;
         sample_lights<scene_kind>(view, kinds, k, surfaces, path, light_numbers, seed, lights);
         if constexpr (scene_kind == SceneKind::any)
-            if (view.air.is_present()) attenuate_lights(view.air, surfaces, path, lights);
+            if (view.has_scattering_media) attenuate_lights(view, surfaces, path, lights);
         set_direct_light_glossy(settings, bounce, surfaces, lights, path, shadow[k]);
     }
     scatter_glossy<scene_kind>(settings, bounce, sky, surfaces, scatter_numbers, path);

@@ -17,14 +17,17 @@ REALCAM_INLINE Vec3f ray_start(const RaySpawnPoint& spawn, Vec3f direction) {
     return spawn.position + offset * spawn.geometric_normal;
 }
 
-/// Attenuates a light sample at a surface by the air between surface and light, unless the path arrives inside glass
-/// and the light comes from the same side.
+/// Attenuates a light sample at a surface by the medium between surface and light. `behind`: the material whose
+/// interior a path enters if it passes the surface; null: the path leaves glass, or cannot pass.
 template <SceneKind scene_kind, int N>
-REALCAM_INLINE void attenuate_light(const AirView& air, const RaySpawnPoint& spawn, const PathState<N>& path, int slot,
-                                    LightSample& light) {
-    if constexpr (scene_kind == SceneKind::any)
-        if (is_black(path.absorption[slot]) || dot(spawn.geometric_normal, light.direction) < 0.0f)
-            attenuate<scene_kind>(air, spawn.position, light);
+REALCAM_INLINE void attenuate_light(const SceneView& view, const RaySpawnPoint& spawn, const Material* behind,
+                                    const PathState<N>& path, int slot, LightSample& light) {
+    if constexpr (scene_kind == SceneKind::any) {
+        if (!view.has_scattering_media) return;
+        const Material* interior = dot(spawn.geometric_normal, light.direction) < 0.0f ? behind : path.interior[slot];
+        if (interior || view.air.is_present())
+            light.irradiance *= transmittance_to_light(view.air, interior, spawn.position, light);
+    }
 }
 
 /// Shadow rays with the contributions that they test.
@@ -142,24 +145,15 @@ REALCAM_ONE_COPY LightSample light_by_illuminance(const SceneView& scene, LightR
     return chosen;
 }
 
-/// Returns the absorption of a material's interior, per metre. In scenes that may have air, that of clear glass is too
-/// small to have an effect, but not black: PathState::absorption is then black only outside of glass.
-template <SceneKind scene_kind>
-REALCAM_INLINE Color interior_absorption(const Material& material) {
-    if constexpr (scene_kind == SceneKind::any)
-        if (is_black(material.absorption)) return grey(1e-30f);
-    return material.absorption;
-}
-
-/// Continues a path at a point at which the air scatters it. The density in the path's state is the factor by which
-/// cross_air has multiplied that of the phase function.
+/// Continues a path at a point at which a medium scatters it. `anisotropy`: of the medium. The density in the path's
+/// state is the factor by which cross_medium has multiplied that of the phase function.
 template <int N>
-REALCAM_INLINE void scatter_in_air(const AirView& air, int slot, Vec3f position, Vec2f u, PathState<N>& path) {
-    const Vec3f arriving = path.rays.direction[slot], direction = sample_henyey_greenstein(air.anisotropy, arriving, u);
+REALCAM_INLINE void scatter_in_medium(float anisotropy, int slot, Vec3f position, Vec2f u, PathState<N>& path) {
+    const Vec3f arriving = path.rays.direction[slot], direction = sample_henyey_greenstein(anisotropy, arriving, u);
     path.rays.origin.set(slot, position);
     path.rays.direction.set(slot, direction);
     path.rays.active[slot] = !is_black(path.throughput[slot]);
-    path.pdf[slot] *= henyey_greenstein(air.anisotropy, dot(arriving, direction));
+    path.pdf[slot] *= henyey_greenstein(anisotropy, dot(arriving, direction));
     path.receiver_position.set(slot, position);
     path.receiver_normal.set(slot, {0, 0, 0});
     path.receiver_sky[slot] = SkySampling::chosen;
@@ -183,7 +177,8 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     const float time = time_of<scene_kind>(path, slot);
     if constexpr (scene_kind == SceneKind::any) {
         if (!point.material) {
-            scatter_in_air(view.air, slot, point.position, scatter_numbers[slot], path);
+            const float anisotropy = medium_around(view.air, path.interior[slot]).anisotropy;
+            scatter_in_medium(anisotropy, slot, point.position, scatter_numbers[slot], path);
             return false;
         }
         if (point.material->only_shadows) {
@@ -203,12 +198,13 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}, time};
     if constexpr (scene_kind != SceneKind::plain) receiver.lobe = light_lobe(point, -direction);
     const SkySampling sky = sky_sampling(view, all_lobes_scatter(settings, bounce), bounce == 0);
+    const Material* behind = point.is_front && !point.material->is_thin ? point.material : nullptr;
     // Unrolled code would overflow the instruction cache of a GPU.
     REALCAM_NO_UNROLL
     for (int k = 0; k < kLightSampleCount; ++k) {
         if (!has_light(view, sky, k)) continue;
         LightSample light = sample_light<scene_kind>(view, sky, receiver, k, light_numbers[slot], seed);
-        attenuate_light<scene_kind>(view.air, point, path, slot, light);
+        attenuate_light<scene_kind>(view, point, behind, path, slot, light);
         set_direct_light(settings, bounce, slot, point, bsdf, light, path, shadow[k]);
         shadow.trace(k, false);
     }
@@ -217,9 +213,7 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     if constexpr (scene_kind == SceneKind::any) path.receiver_sky[slot] = sky;
     if constexpr (scene_kind != SceneKind::plain) {
         path.set_receiver_lobe(slot, receiver.lobe);
-        if (refracted)
-            path.absorption.set(slot,
-                                point.is_front ? interior_absorption<scene_kind>(*point.material) : Color{0, 0, 0});
+        if (refracted) path.interior[slot] = behind;
     }
     return false;
 }

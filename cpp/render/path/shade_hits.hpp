@@ -1,19 +1,20 @@
 #pragma once
-#include "../../scene/lights/air.hpp"
+#include "../../scene/lights/attenuation.hpp"
 #include "emitter_hit.hpp"
 #include "path_settings.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 /// Surfaces that the paths of a block have hit, one SurfacePoint per slot. All surface types of this folder have the
-/// same set() and, for vector code, position, normal, lobe() and is_in_lanes(). Those of SceneKind::any have set_air().
+/// same set() and, for vector code, position, normal, lobe() and is_in_lanes(). Those of SceneKind::any have
+/// set_scattering_point().
 template <int N>
 struct Surfaces {
     SurfacePoint points[N];
 
     REALCAM_INLINE void set(int slot, const SurfacePoint& point) { points[slot] = point; }
-    /// Stores a point at which the air scatters the path: a point without a material. `direction`: of the path, unit.
-    REALCAM_INLINE void set_air(int slot, Vec3f position, Vec3f direction) {
+    /// Stores a point at which a medium scatters the path: a point without a material. `direction`: of the path, unit.
+    REALCAM_INLINE void set_scattering_point(int slot, Vec3f position, Vec3f direction) {
         points[slot].position = position;
         points[slot].normal = points[slot].geometric_normal = -direction;
         points[slot].self_offset = 0.0f;
@@ -94,8 +95,9 @@ REALCAM_INLINE void end_at_environment_map(const SceneView& view, const PathSett
 }  // namespace shade_hits_detail
 
 /// Ends or shades each active path after its ray was traced: adds the emission of the surface or the environment that
-/// the ray has hit, attenuates the throughput by the medium, and writes the surface points of continuing paths to
-/// `surfaces`. These paths move to the first slots, and path.count becomes their number. `bounce`: 0 for camera rays.
+/// the ray has hit, attenuates the throughput by glass that does not scatter light, and writes the surface points of
+/// continuing paths to `surfaces`. These paths move to the first slots, and path.count becomes their number. `bounce`:
+/// 0 for camera rays.
 template <SceneKind scene_kind, int N, class SurfacesT>
 REALCAM_INLINE void shade_hits(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                const SampleBlock<N>& block, int bounce, const Hits<N>& hits, PathState<N>& path,
@@ -123,8 +125,9 @@ REALCAM_INLINE void shade_hits(const SceneView& view, const CameraView& camera, 
             continue;
         }
         if constexpr (scene_kind == SceneKind::any) {
-            if (hit.triangle == kScatteredByAir) {
-                surfaces.set_air(N > 1 ? path.count : 0, path.rays.origin[i] + hit.distance * direction, direction);
+            if (hit.triangle == kScatteredInMedium) {
+                surfaces.set_scattering_point(N > 1 ? path.count : 0, path.rays.origin[i] + hit.distance * direction,
+                                              direction);
                 path.template move<scene_kind>(i, path.count++);
                 continue;
             }
@@ -134,10 +137,11 @@ REALCAM_INLINE void shade_hits(const SceneView& view, const CameraView& camera, 
         });
         surfaces.set(N > 1 ? path.count : 0, point);
         if constexpr (scene_kind != SceneKind::plain) {
-            const Color absorption = path.absorption[i];
-            if (!is_black(absorption))
-                path.throughput.set(i,
-                                    path.throughput[i] * transmittance(absorption, hit.distance * length(direction)));
+            const Material* interior = path.interior[i];
+            if (interior && !is_black(interior->absorption) &&
+                !(scene_kind == SceneKind::any && interior->has_scattering_interior()))
+                path.throughput.set(
+                    i, path.throughput[i] * transmittance(interior->absorption, hit.distance * length(direction)));
         }
         if (!is_black(point.emission))
             results.irradiance.set(

@@ -9,8 +9,8 @@ namespace REALCAM_NAMESPACE {
 
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 inline constexpr std::uint32_t kNoInstance = 0xffffffffu;
-/// Value of Hit::triangle of a path that the air scatters in front of the surface (cross_air).
-inline constexpr std::uint32_t kScatteredByAir = 0xfffffffeu;
+/// Value of Hit::triangle of a path that a medium scatters in front of the surface (cross_medium).
+inline constexpr std::uint32_t kScatteredInMedium = 0xfffffffeu;
 
 /// Closest hit of a ray: triangle and barycentric coordinates.
 struct Hit {

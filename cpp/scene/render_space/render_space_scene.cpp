@@ -106,6 +106,7 @@ InstancesView RenderSpaceScene::instances_view() const {
     view.point_count = static_cast<std::int32_t>(points_.size());
     view.area_count = static_cast<std::int32_t>(areas_.size());
     view.air = air_;
+    view.has_scattering_media = has_scattering_media_;
     return view;
 }
 
@@ -161,9 +162,7 @@ void RenderSpaceScene::set_air() {
     const Air& air = scene.air;
     air_ = {};
     if (!air.is_present()) return;
-    air_ = {air.extinction,
-            air.extinction * air.albedo,
-            air.anisotropy,
+    air_ = {{air.extinction, air.extinction * air.albedo, air.anisotropy},
             {-kFarAway, -kFarAway, -kFarAway},
             {kFarAway, kFarAway, kFarAway}};
     const bool has_distant_light = !scene.suns.empty() || scene.environment.emits();
@@ -272,14 +271,17 @@ InstanceView RenderSpaceScene::instance_view(const Affine<double>& transform, st
 void RenderSpaceScene::find_kind() {
     const auto include = [&](const Scene& scene) {
         if (!scene.colors.empty()) kind_ = std::max(kind_, SceneKind::opaque);
-        for (const Material& m : scene.materials)
+        for (const Material& m : scene.materials) {
+            has_scattering_media_ |= m.has_scattering_interior();
             kind_ = std::max(kind_, m.has_holes()  ? SceneKind::any
                                     : m.is_plain() ? SceneKind::plain
                                                    : SceneKind::opaque);
+        }
     };
     include(*assembly_.static_geometry);
     for (const Instance& instance : assembly_.instances) include(*instance.object);
-    if (assembly_.static_geometry->air.is_present()) kind_ = SceneKind::any;
+    has_scattering_media_ |= assembly_.static_geometry->air.is_present();
+    if (has_scattering_media_) kind_ = SceneKind::any;
 }
 
 PointLight RenderSpaceScene::point_light(const ScenePointLight& light, Vec3d position, Vec3d axis) {

@@ -100,7 +100,7 @@ private:
     /// Returns the view of instance i, without keys. `transform`: its exact transform to render space.
     InstanceView instance_view(const Affine<double>& transform, std::size_t i) const;
 
-    /// Sets kind_ by the materials of all geometry and the air.
+    /// Sets kind_ and has_scattering_media_ by the materials of all geometry and the air.
     void find_kind();
 
     /// Converts a light. `position`, `axis`: of the light, transformed.
@@ -117,6 +117,7 @@ private:
     RenderSpaceMesh static_geometry_;
     BoundingBox static_box_;  ///< bounding box of the static geometry in scene space; empty if there is no air
     AirView air_;
+    bool has_scattering_media_ = false;
     std::vector<BoundingBox> boxes_;  ///< for each instance: bounding box of its object, in object space
     std::vector<std::uint32_t> object_of_;  ///< for each instance: index in objects_
     std::vector<std::unique_ptr<RenderSpaceMesh>> objects_;

@@ -55,7 +55,7 @@ void begin_all_around(int first, SampleBlock<N>& block, PathState<N>& path, Path
         path.weight[i] = 0.5f;
         path.throughput.set(i, grey(0.5f));
         path.pdf[i] = kDelta;
-        path.absorption.set(i, {0, 0, 0});
+        path.interior[i] = nullptr;
         results.irradiance.set(i, {0, 0, 0});
         results.depth[i] = kFarAway;
         results.weight[i] = 0.5f;

@@ -86,6 +86,7 @@ TEST_CASE("glTF: metallic-roughness and emission in cd/m^2") {
     check_vec(m.emission, 2000, 1000, 0);
     // Half a unit of the file is a metre: ln 2 and ln 4 of it are lost there.
     check_vec(m.absorption, 0, std::log(2), std::log(4));
+    CHECK(m.scattering == Color{0, 0, 0});
 }
 
 TEST_CASE("glTF: pictures as files, and their transform") {

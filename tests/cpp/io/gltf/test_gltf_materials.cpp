@@ -143,6 +143,15 @@ TEST_CASE("glTF: extensions of materials") {
     CHECK(volume.attenuation_distance == 0.006f);
     check_vec(volume.attenuation_color, .5, .25, .125);
     check_picture(volume.thickness_texture, 7);
+    for (const char* name : {"multiscatterColorFactor", "multiscatterColor"}) {
+        const auto scatter = file.extended("KHR_materials_volume_scatter",
+                                           "\"" + std::string(name) + R"(":[0.5,0.25,0.125],"scatterAnisotropy":-0.25)")
+                                 .volume;
+        check_vec(scatter.multiscatter_color_factor, .5, .25, .125);
+        CHECK(scatter.scatter_anisotropy == -0.25f);
+    }
+    file.extended("KHR_materials_volume_scatter", R"("multiscatterColorTexture":)" + info(7));
+    CHECK(file.warned("multiscatterColorTexture is not modelled"));
 
     const auto clearcoat = file.extended("KHR_materials_clearcoat",
                                          R"("clearcoatFactor":0.75,"clearcoatRoughnessFactor":0.125,

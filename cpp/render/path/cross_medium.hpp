@@ -1,25 +1,26 @@
 #pragma once
 #include <cmath>
 
-#include "../../scene/lights/air.hpp"
+#include "../../scene/lights/attenuation.hpp"
 #include "../../scene/lights/light.hpp"
 #include "../../scene/materials/phase_function.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-// Scattering of light by the air along one ray of a path. Each ray takes two independent samples:
+// Scattering of light by a medium, the air or the interior of glass, along one ray of a path. Each ray takes two
+// independent samples:
 //
-// - Light that the air scatters once: a point on the ray, sampled towards a light (equiangular sampling, Kulla and
+// - Light that the medium scatters once: a point on the ray, sampled towards a light (equiangular sampling, Kulla and
 //   Fajardo 2012) or by the transmittance, and a light sample there.
-// - The continuation of the path: to the surface that the ray hits, or to a point of the air (distance sampling),
-//   where the phase function is sampled.
+// - The continuation of the path: to the surface that the ray hits, or to a point of the medium (distance
+//   sampling), where the phase function is sampled.
 //
 // Emitters that the scattered ray hits are also found by the light samples, and the two are combined by multiple
 // importance sampling. Both densities are conditional on the light towards which points are sampled; that light is
 // chosen once for both, so that the weights of the two sum to 1.
 
-/// Distance to the next scattering along a ray in the air, where the ray's length limits the distance: a mixture of the
-/// three channels' exponential distributions, in the proportions of the path's throughput.
+/// Distance to the next scattering along a ray in a medium, where the ray's length limits the distance: a mixture of
+/// the three channels' exponential distributions, in the proportions of the path's throughput.
 class FreePath {
 public:
     REALCAM_INLINE FreePath(Color extinction, Color throughput, float length)
@@ -99,33 +100,35 @@ private:
     float first_, range_;  ///< angle from that point to the ray's begin, and to its end less that, seen from the centre
 };
 
-/// Random numbers for one ray in the air.
-struct AirNumbers {
+/// Random numbers for one ray in a medium.
+struct MediumNumbers {
     Vec2f point, light, path;  ///< pairs of random numbers in [0, 1)
     std::uint32_t seed;  ///< random bits
 };
 
-/// Result of cross_air: effect of the air on a path along one ray.
-struct AirCrossing {
+/// Result of cross_medium: effect of the medium on a path along one ray.
+struct MediumCrossing {
     LightSample light;  ///< sample of a light at `scattering_point`
     Vec3f scattering_point;
-    Color from_light = {0, 0, 0};  ///< radiance that the air scatters from that light along the path, times the
+    Color from_light = {0, 0, 0};  ///< radiance that the medium scatters from that light along the path, times the
                                    ///< throughput, if nothing occludes the light; black: none
-    float scattered_at = -1.0f;  ///< distance at which the air scatters the path, m; negative: it reaches the surface
+    float scattered_at =
+        -1.0f;  ///< distance at which the medium scatters the path, m; negative: it reaches the surface
     Color weight = {1, 1, 1};  ///< factor of the path's throughput
     /// If the path is scattered: density of its scattering point over that of the point with the light sample.
     float density_ratio = 1.0f;
 };
 
-/// A ray of a path, whose origin is outside of glass.
-struct AirRay {
+/// A ray of a path.
+struct MediumRay {
     Vec3f origin, direction;  ///< unit direction
     float length;  ///< m; kFarAway if the ray hits nothing
     float time;  ///< fraction of the exposure
     Color throughput;  ///< of the path
+    const Material* interior = nullptr;  ///< PathState::interior
 };
 
-namespace cross_air_detail {
+namespace cross_medium_detail {
 
 /// Returns the distribution of points towards a light that was picked; it is not useful for lights at infinity.
 REALCAM_INLINE Equiangular toward_light(const SceneView& scene, const LightPick& pick, Vec3f start, Vec3f direction,
@@ -140,23 +143,25 @@ REALCAM_INLINE Equiangular toward_light(const SceneView& scene, const LightPick&
     return {start, direction, 0.0f, start, 1.0f};
 }
 
-}  // namespace cross_air_detail
+}  // namespace cross_medium_detail
 
-/// Takes both samples of a ray in the air. `may_scatter`: false if the path ends at the next point that would scatter
-/// it; it then goes on to the surface.
-REALCAM_GPU_CALL AirCrossing cross_air(const SceneView& scene, AirRay ray, bool may_scatter, AirNumbers u) {
-    using namespace cross_air_detail;
-    const AirView& air = scene.air;
-    AirCrossing crossing;
-    const AirInterval inside = air_interval(air, ray.origin, ray.direction, ray.length);
-    const FreePath free_path(air.extinction, ray.throughput, inside.length);
+/// Takes both samples of a ray in the medium around it. `may_scatter`: false if the path ends at the next point that
+/// would scatter it; it then goes on to the surface.
+REALCAM_GPU_CALL MediumCrossing cross_medium(const SceneView& scene, MediumRay ray, bool may_scatter, MediumNumbers u) {
+    using namespace cross_medium_detail;
+    const Medium medium = medium_around(scene.air, ray.interior);
+    MediumCrossing crossing;
+    const MediumInterval inside = medium_interval(scene.air, ray.interior, ray.origin, ray.direction, ray.length);
+    const FreePath free_path(medium.extinction, ray.throughput, inside.length);
     const float probability = free_path.scattering_probability();
     if (!(probability > 0.0f)) return crossing;
     const Vec3f start = ray.origin + inside.begin * ray.direction;
     const auto receiver_at = [&](float distance) -> LightReceiver {
         return {start + distance * ray.direction, {0, 0, 0}, ray.time};
     };
-    const bool has_light = realcam::has_light(scene, SkySampling::chosen, 0);
+    // Light from infinity does not reach the interior of glass along a straight line.
+    const bool has_light =
+        ray.interior ? scene.light_node_count > 0 : realcam::has_light(scene, SkySampling::chosen, 0);
     // The light towards which points are sampled is chosen by its illuminance at a random point of the ray.
     const LightReceiver middle = receiver_at(free_path.sample(u.point.y));
     LightPick pick{LightKind::environment, 0, 0.0f, {0, 0}};
@@ -177,20 +182,21 @@ REALCAM_GPU_CALL AirCrossing cross_air(const SceneView& scene, AirRay ray, bool 
         crossing.scattering_point = receiver.position;
         crossing.light =
             sample_light<SceneKind::any>(scene, SkySampling::chosen, receiver, 0, u.light, hash32(u.seed, 3));
-        attenuate<SceneKind::any>(air, receiver.position, crossing.light);
+        crossing.light.irradiance *= transmittance_to_light(scene.air, ray.interior, receiver.position, crossing.light);
         const float density = point_density(distance),
-                    phase = henyey_greenstein(air.anisotropy, dot(ray.direction, crossing.light.direction));
+                    phase = henyey_greenstein(medium.anisotropy, dot(ray.direction, crossing.light.direction));
         const float other = may_scatter ? free_path.density(distance) / density * phase : 0.0f;
         crossing.from_light = (mis_weight(crossing.light.pdf, other) * phase / density) * ray.throughput *
-                              air.scattering * transmittance(air.extinction, distance) * crossing.light.irradiance;
+                              medium.scattering * transmittance(medium.extinction, distance) *
+                              crossing.light.irradiance;
     }
     if (!may_scatter) {
-        crossing.weight = transmittance(air.extinction, inside.length);
+        crossing.weight = transmittance(medium.extinction, inside.length);
     } else if (u.path.x < probability) {
         const float distance = free_path.sample(remapped_random(u.path.x, probability)),
                     density = free_path.density(distance);
         crossing.scattered_at = inside.begin + distance;
-        crossing.weight = (1.0f / density) * air.scattering * transmittance(air.extinction, distance);
+        crossing.weight = (1.0f / density) * medium.scattering * transmittance(medium.extinction, distance);
         crossing.density_ratio = density / point_density(distance);
     } else {
         crossing.weight = free_path.weight_at_end();
