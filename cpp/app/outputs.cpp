@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <regex>
 #include <sstream>
 #include <system_error>
@@ -73,6 +74,12 @@ std::string settings_digest(const shot::ShotRequest& request, const Camera& came
          << ' ' << static_cast<int>(request.tone) << ' ' << request.denoises << ' ' << request.meters_exposure_time()
          << ' ' << request.iso_follows_s.value_or(-1) << ' ' << request.environment_layer << '\n'
          << static_cast<int>(request.exr_color_space) << '\n';
+    for (const std::string& variant : request.variants) text << variant << '\n';
+    text << request.scene_name << '\n';
+    if (const std::optional<Air>& air = request.air)
+        text << air->extinction.r << ' ' << air->extinction.g << ' ' << air->extinction.b << ' ' << air->albedo.r << ' '
+             << air->albedo.g << ' ' << air->albedo.b << ' ' << air->anisotropy << ' ' << air->margin_m.value_or(-1)
+             << '\n';
     // The contents of configuration files are hashed below, as those of all inputs.
     const shot::OcioRequest& ocio = request.ocio;
     for (const std::string& name : {ocio.config.starts_with(shot::kBuiltInConfig) ? ocio.config : "", ocio.display,

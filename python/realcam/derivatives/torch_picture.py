@@ -40,14 +40,20 @@ def torch_render(
     spp) of gradient_seed (None: derived from seed), are independent of those of the picture: the gradient of any loss
     that is at most quadratic in the picture is unbiased. Camera i has seed + i and gradient_seed + i. Second
     derivatives are not supported.
-    Raises InputError for parameters that cannot be set, and for tensors of other shapes or on other devices than the
-    CPU; ImportError without torch.
+    Raises InputError for parameters that cannot be set, and for tensors of other types and shapes or on other devices
+    than the CPU; ImportError without torch.
     """
     try:
         import torch
     except ImportError as error:
         raise ImportError("realcam.torch_render needs PyTorch: pip install realcam[torch]") from error
 
+    if not isinstance(parameters, Mapping):
+        raise InputError(f"parameters must be a dict of tensors; found a {type(parameters).__name__}")
+    for parameter, tensor in parameters.items():
+        if not isinstance(tensor, torch.Tensor) or tensor.is_complex() or tensor.dtype == torch.bool:
+            found = getattr(tensor, "dtype", type(tensor).__name__)
+            raise InputError(f"{parameter} must be a torch.Tensor of real numbers; found {found}")
     listed = [cameras] if isinstance(cameras, Camera) else list(cameras)
     counts = {len(tensor) for tensor in parameters.values() if tensor.ndim == 1}
     is_single = isinstance(cameras, Camera) and not counts

@@ -89,10 +89,14 @@ def test_pictures_run_on_the_device_that_is_named() -> None:
     [
         ({"f_number": torch.zeros(2, 2)}, r"f_number must have shape \(\) or \(1,\); found \(2, 2\)"),
         ({"f_number": torch.ones(2), "up_m": torch.ones(3)}, "must have shape"),
+        ({"f_number": 4.0}, "f_number must be a torch.Tensor of real numbers; found float"),
+        ({"f_number": np.array(4.0)}, "f_number must be a torch.Tensor of real numbers; found float64"),
+        ({"f_number": torch.tensor(4 + 0j)}, "f_number must be a torch.Tensor of real numbers; found torch.complex64"),
+        ([torch.tensor(4.0)], "parameters must be a dict of tensors; found a list"),
         ({"zoom": torch.tensor(1.0)}, "unknown parameter 'zoom'"),
         ({"up_m": torch.tensor(1.0, device="meta")}, "must be in host memory"),
     ],
 )
-def test_wrong_tensors_are_refused(parameters: dict[str, torch.Tensor], message: str) -> None:
+def test_wrong_tensors_are_refused(parameters: object, message: str) -> None:
     with pytest.raises(rc.InputError, match=message):
         rc.torch_render(stripes(), corner_camera(), parameters, **SETTINGS)

@@ -108,11 +108,11 @@ def test_a_packed_stage_keeps_its_lens_file(tmp_path: Path) -> None:
     assert lens.surfaces[:2] == rc.Lens.load("tessar-50mm").surfaces[:2]
 
 
-def frames_of(path: Path) -> str:
+def frames_of(path: Path, *words: str) -> str:
     """Takes a frame and returns the notices."""
     command = [sys.executable, "-m", "realcam", "render", str(path), "-o", str(path.parent / "f#.png"), "--frames", "1"]
     options = ["--spp", "1", "--resolution", "12x8", "--device", "cpu"]
-    return subprocess.run([*command, *options], check=True, capture_output=True, text=True).stderr
+    return subprocess.run([*command, *options, *words], check=True, capture_output=True, text=True).stderr
 
 
 @pytest.mark.picture_files
@@ -141,3 +141,21 @@ def test_frames_are_taken_again_after_a_change_of_a_sublayer(tmp_path: Path) -> 
     UsdGeom.Cube(stage.GetPrimAtPath("/Box")).CreateDisplayColorAttr([(0.1, 0.5, 0.1)])
     stage.Save()
     assert "taken again" in frames_of(path)
+
+
+@pytest.mark.picture_files
+def test_frames_are_taken_again_with_another_variant_and_in_other_air(tmp_path: Path) -> None:
+    stage = camera_stage(tmp_path / "stage.usda")
+    variants = stage.GetPrimAtPath("/Box").GetVariantSets().AddVariantSet("colour")
+    for name, colour in (("red", (0.8, 0.1, 0.1)), ("green", (0.1, 0.5, 0.1))):
+        variants.AddVariant(name)
+        variants.SetVariantSelection(name)
+        with variants.GetVariantEditContext():
+            UsdGeom.Cube(stage.GetPrimAtPath("/Box")).CreateDisplayColorAttr([colour])
+    stage.Save()
+    path = tmp_path / "stage.usda"
+    options: tuple[str, ...] = ("--variants", "/Box{colour=red}", "--visibility", "20")
+    frames_of(path, *options)
+    assert "exist already" in frames_of(path, *options)
+    for options in (("--variants", "/Box{colour=red}", "--visibility", "21"), ("--visibility", "21")):
+        assert "taken again" in frames_of(path, *options)
