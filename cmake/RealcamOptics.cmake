@@ -20,9 +20,9 @@ target_compile_features(realcam_optics PUBLIC cxx_std_20)
 target_link_libraries(realcam_optics PRIVATE $<BUILD_INTERFACE:realcam_settings>)
 realcam_precompile_headers(realcam_optics)
 # Optimised for several machines, which takes many times as long to compile and is of no use for debugging.
-set(REALCAM_LANE_SOURCES adjoint_path.cpp outline_rays.cpp tangent_path.cpp)
-list(TRANSFORM REALCAM_LANE_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/cpp/optics/derivatives/)
-set_source_files_properties(${REALCAM_LANE_SOURCES} PROPERTIES
+set(lane_sources adjoint_path.cpp outline_rays.cpp tangent_path.cpp)
+list(TRANSFORM lane_sources PREPEND ${PROJECT_SOURCE_DIR}/cpp/optics/derivatives/)
+set_source_files_properties(${lane_sources} PROPERTIES
   COMPILE_OPTIONS "$<$<NOT:$<CONFIG:Debug>>:${REALCAM_KERNEL_FLAGS}>" SKIP_PRECOMPILE_HEADERS ON)
 target_include_directories(realcam_optics PUBLIC
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/cpp>

@@ -91,7 +91,7 @@ def render_gradient(
         against the axis, through the film's centre;
       "film_shift_right_mm", "film_shift_up_mm": Film.shift_mm; "film_tilt_x_deg", "film_tilt_y_deg": rotation of the
         film about its own axes;
-      "rim_scale": common factor, 1 now, of the clear semi-diameters of all surfaces but the stop, which vignette;
+      "rim_scale": factor, now 1, of the rims that vignette: the clear semi-diameters of all surfaces but the stop;
       "focus_distance_m", "f_number": settings of the lens's rings; "focal_length_mm": setting of the zoom ring, as
         the focal length of the lens focused at infinity; "exposure_time_s", unless something moves;
       a dict of such parameters and their rates: a parameter by which all of these change.

@@ -234,17 +234,19 @@ def test_even_light_has_none_at_a_fisheyes_border(device: str) -> None:
     assert abs(1000 * boundary[8]) > 20 * error[1]
 
 
-@pytest.mark.parametrize("camera", [lambda: corner_camera(2.2), fisheye_camera])
-def test_the_scale_of_rims_equals_differences(camera: Callable[[], rc.Camera], device: str) -> None:
+@pytest.mark.parametrize(("camera", "scale"), [(lambda: corner_camera(2.2), 0.95), (fisheye_camera, 1.0)])
+def test_the_scale_of_rims_equals_differences(camera: Callable[[], rc.Camera], scale: float, device: str) -> None:
     """In even light, all of it comes from the boundary. When the rim of the fisheye's steep first surface grows, it
     also moves along z."""
     family, step = rc.CameraParameters(camera(), "rim_scale"), 1e-3
     found, error = estimate(
-        lambda seed: family.gradient(sky(), [1], np.ones((8, 8, 3)), spp=1, outline_spp=128, seed=seed, device=device)
+        lambda seed: family.gradient(
+            sky(), [scale], np.ones((8, 8, 3)), spp=1, outline_spp=128, seed=seed, device=device
+        )
     )
 
     def of_seed(seed: int) -> NDArray[np.float64]:
-        above, below = (family.render(sky(), [1 + h], spp=1024, seed=seed, device=device) for h in (step, -step))
+        above, below = (family.render(sky(), [scale + h], spp=1024, seed=seed, device=device) for h in (step, -step))
         return np.asarray((above.astype(float) - below).sum() / (2 * step))
 
     wanted, wanted_error = estimate(of_seed)
