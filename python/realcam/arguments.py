@@ -95,14 +95,14 @@ def complaint(doc: str, arguments: tuple[Any, ...], named: dict[str, Any]) -> st
     owner = function.args.args[0].annotation if is_method else None
     name = f"{ast.unparse(owner)}()" if owner and function.name == "__init__" else f"{function.name}()"
     parameters = _parameters(function)
-    problem = _misfit_of_names(name, parameters, arguments, named)
+    problem = _wrong_names(name, parameters, arguments, named)
     if problem:
         return problem
     bound = inspect.Signature(list(parameters)).bind(*arguments, **named).arguments
     if function.name == "__init__":
         del bound["self"]  # not constructed yet, so it has no repr
     annotations = {p.name: p.annotation for p in parameters}
-    for check in (_misfit, _out_of_range):
+    for check in (_expected_if_wrong, _out_of_range):
         for argument, value in bound.items():
             expected = check(annotations[argument], value)
             if expected:
@@ -151,7 +151,7 @@ def _text(value: Any) -> str:
         return f"one of the type {type(value).__name__}"
 
 
-def _misfit_of_names(
+def _wrong_names(
     function: str, parameters: Sequence[inspect.Parameter], arguments: tuple[Any, ...], named: dict[str, Any]
 ) -> str | None:
     """Returns the message if arguments are unknown, duplicate, missing or too many; None if they fit the parameters."""
@@ -176,15 +176,15 @@ def _misfit_of_names(
     return f"{function} needs the argument {' and '.join(missing)}" if missing else None
 
 
-def _misfit(annotation: ast.expr | None, value: Any) -> str | None:
+def _expected_if_wrong(annotation: ast.expr | None, value: Any) -> str | None:
     """Returns the description of the expected type if a value does not match the annotation; None if it does."""
     if isinstance(annotation, ast.BinOp):
-        expected = [_misfit(side, value) for side in (annotation.left, annotation.right)]
+        expected = [_expected_if_wrong(side, value) for side in (annotation.left, annotation.right)]
         return f"{expected[0]} or {expected[1]}" if expected[0] and expected[1] else None
     if isinstance(annotation, ast.Constant):  # None
         return None if value is None else "None"
     if isinstance(annotation, ast.Subscript):
-        return _misfit_of_items(annotation, value)
+        return _expected_items_if_wrong(annotation, value)
     kind = annotation.id if isinstance(annotation, ast.Name) else "object"
     if kind in SCALARS:
         description, fits = SCALARS[kind]
@@ -194,13 +194,13 @@ def _misfit(annotation: ast.expr | None, value: Any) -> str | None:
     return f"{'an' if kind[0] in 'AEIO' else 'a'} {kind}"
 
 
-def _misfit_of_items(annotation: ast.Subscript, value: Any) -> str | None:
-    """Implements _misfit for annotations with items, such as list[float] or tuple[int, int]."""
+def _expected_items_if_wrong(annotation: ast.Subscript, value: Any) -> str | None:
+    """Implements _expected_if_wrong for annotations with items, such as list[float] or tuple[int, int]."""
     outer = ast.unparse(annotation.value)
     items = annotation.slice.elts if isinstance(annotation.slice, ast.Tuple) else [annotation.slice]
     if outer in ("Optional", "Union"):  # spelling of pybind11 before version 3
         options = [*items, ast.Constant(None)] if outer == "Optional" else items
-        expected = [_misfit(option, value) for option in options]
+        expected = [_expected_if_wrong(option, value) for option in options]
         return None if None in expected else " or ".join(map(str, expected))
     if outer in ("Mapping", "dict"):
         return None if isinstance(value, Mapping) and all(_all_fit(items, pair) for pair in value.items()) else "a dict"
@@ -210,13 +210,13 @@ def _misfit_of_items(annotation: ast.Subscript, value: Any) -> str | None:
         words = SCALARS[ast.unparse(items[0])][0].split(" ", 1)[-1]
         return None if _all_fit(items, value) else f"{NUMBERS[len(items)]} {words}s"
     listed = _listed(value)
-    if listed is not None and all(_misfit(items[0], item) is None for item in listed):
+    if listed is not None and all(_expected_if_wrong(items[0], item) is None for item in listed):
         return None
-    return f"a list, each of them {_misfit(items[0], _Misfit())}"
+    return f"a list of items, each {_expected_if_wrong(items[0], _MatchesNothing())}"
 
 
-class _Misfit:
-    """A value that matches no type, for which _misfit returns the description of every type."""
+class _MatchesNothing:
+    """A value that matches no type, for which _expected_if_wrong returns the description of every type."""
 
 
 def _listed(value: Any) -> list[Any] | None:
@@ -234,7 +234,7 @@ def _all_fit(annotations: Sequence[ast.expr], value: Any) -> bool:
     return (
         listed is not None
         and len(listed) == len(annotations)
-        and all(_misfit(a, v) is None for a, v in zip(annotations, listed, strict=True))
+        and all(_expected_if_wrong(a, v) is None for a, v in zip(annotations, listed, strict=True))
     )
 
 

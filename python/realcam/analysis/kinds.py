@@ -40,7 +40,7 @@ from .zernike import ZernikeFit, plot_zernike_fit, zernike_fit
 
 @dataclass(frozen=True)
 class PlotArguments:
-    """Arguments of a plot, with the ray bundles that plots share. An argument that is None has the plot's default.
+    """Arguments of a plot, with a cache of ray bundles for several plots. None stands for the plot's default.
 
     fields_deg: (F,); wavelengths_nm: (W,); frequencies_per_mm: (K,), periods per mm on the film.
     method: of the MTF and the point spread function. PlotKind.options are those that apply to a plot.

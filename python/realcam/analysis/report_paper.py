@@ -14,9 +14,9 @@ from .report_plots import PAGE_IN, ReportPlots
 from .style import GREY
 
 LEFT, RIGHT = 0.04, 0.96
-QUIET = 0.7  # opacity of secondary text
+SECONDARY_ALPHA = 0.7  # opacity of secondary text
 # Column widths of the prescription, inches; the columns of Seidel sums share the remaining width.
-PRESCRIPTION_IN = (0.25, 0.85, 0.72, 0.74, 1.05, 0.62)
+PRESCRIPTION_WIDTHS_IN = (0.25, 0.85, 0.72, 0.74, 1.05, 0.62)
 
 
 def pdf_of(facts: ReportFacts, plots: ReportPlots, theme: str) -> bytes:
@@ -38,7 +38,7 @@ def lens_page(facts: ReportFacts, plots: ReportPlots, theme: str) -> Figure:
     _head(figure, facts.title, "The lens")
     y = 0.944  # of the next text, as a fraction of the page's height
     for line in textwrap.wrap(facts.source, 150)[:2]:
-        figure.text(LEFT, y, line, fontsize=6, va="top", alpha=QUIET, parse_math=False)
+        figure.text(LEFT, y, line, fontsize=6, va="top", alpha=SECONDARY_ALPHA, parse_math=False)
         y -= 0.0095
     height = (y - 0.015 - 0.665) / len(plots.drawings)
     for k, options in enumerate(plots.drawings):
@@ -46,7 +46,7 @@ def lens_page(facts: ReportFacts, plots: ReportPlots, theme: str) -> Figure:
         draw_cross_section(plots.source.lens, axes, theme=theme, **options)
         axes.set_title("")
         axes.grid(visible=False)
-    y = _draw_figures(figure, facts.figures, 0.615)
+    y = _draw_numbers(figure, facts.figures, 0.615)
     _draw_table(figure, facts, y - 0.02)
     return figure
 
@@ -57,13 +57,13 @@ def _head(figure: Figure, title: str, subject: str) -> None:
     figure.text(LEFT, 0.951, subject, fontsize=10)
 
 
-def _draw_figures(figure: Figure, figures: list[tuple[str, str]], top: float) -> float:
+def _draw_numbers(figure: Figure, numbers: list[tuple[str, str]], top: float) -> float:
     """Writes names and values in two columns from the height `top` on. Returns their lower end."""
-    half, line = -(-len(figures) // 2), 0.0125
-    for index, (name, text) in enumerate(figures):
+    half, line = -(-len(numbers) // 2), 0.0125
+    for index, (name, text) in enumerate(numbers):
         column, row = divmod(index, half)
         left, y = LEFT + 0.46 * column, top - line * row
-        figure.text(left, y, name, va="top", alpha=QUIET)
+        figure.text(left, y, name, va="top", alpha=SECONDARY_ALPHA)
         figure.text(left + 0.13, y, text, va="top", parse_math=False)
     return top - line * half
 
@@ -87,12 +87,12 @@ def _draw_table(figure: Figure, facts: ReportFacts, top: float) -> None:
             axes.plot((LEFT, RIGHT), (y + 0.3 * line, y + 0.3 * line), color=GREY, linewidth=0.6)
         _draw_row(axes, edges, y - 0.2 * line, row, size, facts.prescription_columns)
     note = textwrap.fill(facts.note, 190)
-    figure.text(LEFT, y - 1.6 * line, note, fontsize=6, va="top", alpha=QUIET, parse_math=False)
+    figure.text(LEFT, y - 1.6 * line, note, fontsize=6, va="top", alpha=SECONDARY_ALPHA, parse_math=False)
 
 
 def _edges(facts: ReportFacts) -> list[float]:
     """Right edges of the columns, as fractions of the page width."""
-    widths = list(PRESCRIPTION_IN)
+    widths = list(PRESCRIPTION_WIDTHS_IN)
     sums = len(facts.columns) - facts.prescription_columns
     if sums:
         widths += [((RIGHT - LEFT) * PAGE_IN[0] - sum(widths)) / sums] * sums

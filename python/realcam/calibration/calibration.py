@@ -21,7 +21,7 @@ from .save import save
 from .stated_camera import StatedCamera
 from .status import PointStatus
 
-ORIGIN = 0.5  # of realcam: coordinate of the centre of the first pixel
+FIRST_PIXEL_CENTRE = 0.5  # in realcam's pixel coordinates
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -92,7 +92,9 @@ class Calibration(StatedCamera):
         D: 0, 4, 5, 8, 12 or 14 coefficients in OpenCV's order. Raises InputError.
         """
         coefficients = _coefficients(D)
-        model = opencv_models.pinhole_model(shift(ORIGIN, ORIGIN) @ _camera_matrix(K, "K"), coefficients)
+        model = opencv_models.pinhole_model(
+            shift(FIRST_PIXEL_CENTRE, FIRST_PIXEL_CENTRE) @ _camera_matrix(K, "K"), coefficients
+        )
         return Calibration(model, size, f"opencv{len(coefficients)}", pixel_origin=0.0)
 
     @staticmethod
@@ -101,7 +103,9 @@ class Calibration(StatedCamera):
         coefficients = _coefficients(D)
         if len(coefficients) != 4:
             raise InputError(f"the fisheye model has 4 coefficients, not {len(coefficients)}")
-        model = opencv_models.fisheye_model(shift(ORIGIN, ORIGIN) @ _camera_matrix(K, "K"), coefficients)
+        model = opencv_models.fisheye_model(
+            shift(FIRST_PIXEL_CENTRE, FIRST_PIXEL_CENTRE) @ _camera_matrix(K, "K"), coefficients
+        )
         return Calibration(model, size, "opencv_fisheye", pixel_origin=0.0)
 
     @staticmethod

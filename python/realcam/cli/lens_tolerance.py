@@ -100,7 +100,7 @@ def _print(study: ToleranceStudy, min_mtf: float, yield_share: float) -> None:
     """Prints a table of measures: value of the nominal lens, and quantiles over all copies."""
     from ..tolerance.plots import MEASURES, with_limit
 
-    typer.echo(f"MTF at {number_text(study.frequencies_per_mm[study.main])} periods per mm")
+    typer.echo(f"MTF at {number_text(study.frequencies_per_mm[study.middle_frequency])} periods per mm")
     typer.echo(f"{'':26}{'nominal':>10}{'10% below':>12}{'50% below':>12}{'90% below':>12}")
     for measure, name in MEASURES.items():
         scale = 100 if measure == "distortion" else 1

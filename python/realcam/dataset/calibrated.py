@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 def calibrations_in(file: str, camera: str, is_rig: bool) -> Mapping[str, Calibration]:
     """Returns the calibrations of a file by the names of the cameras: the one with this name, or all those of a rig.
 
-    camera: empty for the only camera of the file. Raises InputError, CalibrationFileError.
+    camera: empty for the only camera of the file, and for a rig. Raises InputError, CalibrationFileError.
     """
     if not is_rig:
         found = {camera: Calibration.load(file, camera or None)}
@@ -36,18 +36,20 @@ def calibrations_in(file: str, camera: str, is_rig: bool) -> Mapping[str, Calibr
 def calibrated_camera(
     file: str, camera: str, is_rig: bool, size: tuple[int, int], lens: str, film_width_mm: float
 ) -> Camera:
-    """Returns the camera of a calibration at the origin. film_width_mm: 0: as Calibration.camera chooses it.
+    """Returns the camera of a calibration at the origin.
 
-    Raises InputError.
+    camera: a name in calibrations_in(). film_width_mm: 0 for the width that Calibration.camera chooses. Raises
+    InputError.
     """
     calibration = calibrations_in(file, camera if not is_rig else "", is_rig)[camera].resized(size)
     return calibration.camera(lens, film_width_mm=film_width_mm or None)
 
 
 def poses_from_first(calibrations: Mapping[str, Calibration], first: Camera) -> dict[str, Array]:
-    """Returns the poses of all cameras as poses_in_rig does, for a frame whose origin is the first camera's position.
+    """Returns the poses (4, 4) of all cameras, in metres, in the axes of poses_in_rig, about the first camera's film.
 
-    first: the first camera; its position is that of its film, and not that of its centre of projection.
+    first: the first camera. Camera.position is the centre of the film; the centre of projection, which is the origin of
+    poses_in_rig, is the entrance pupil in front of it.
     """
     still = first.replace(motion=[], position=(0, 0, 0), look_at=(0, 0, -1), up=(0, 1, 0))
     shift = np.eye(4)

@@ -261,25 +261,25 @@ def _surfaces(lens: Lens, focusing: FocusRange, squares: list[list[float]]) -> s
     gaps = gaps_of(focusing.lens)
     lines, media = _media(squares)
     lines.append("    // The surfaces, from the film to the scene.")
-    forwards = -1  # sign of the ray's z direction
+    z_sign = -1  # of the ray's direction
     for index in reversed(range(len(lens.surfaces))):
         surface = lens.surfaces[index]
         gap = f"gap_{index + 1}" if index in focusing.gaps_mm else float_text(gaps[index])
         curvature, rim = float_text(surface.curvature_per_mm), float_text(surface.clear_semi_diameter_mm)
-        before, behind = media[index + 1], media[index]
+        before, behind = media[index + 1], media[index]  # along the ray, which runs from the film to the scene
         where = "at"
         if surface.type == "stop":
             call, where = f"pass_stop({gap}, corner, blades, rounding, rotation, apothem, at, way)", "met(at, way)"
         elif surface.type == "aperture":
             call, where = f"pass_plane({gap}, {rim}, at, way)", "met(at, way)"
         elif is_asphere(surface):
-            call = f"cross_surface_{index + 1}({gap}, {before}, {behind}, {forwards}, at, way)"
+            call = f"cross_surface_{index + 1}({gap}, {before}, {behind}, {z_sign}, at, way)"
         elif surface.type == "mirror":
-            call = f"cross_mirror({gap}, {curvature}, {rim}, {before}, {forwards}, at, way)"
+            call = f"cross_mirror({gap}, {curvature}, {rim}, {before}, {z_sign}, at, way)"
         else:
-            call = f"cross_sphere({gap}, {curvature}, {rim}, {before}, {behind}, {forwards}, at, way)"
+            call = f"cross_sphere({gap}, {curvature}, {rim}, {before}, {behind}, {z_sign}, at, way)"
         if surface.type == "mirror":
-            forwards = -forwards
+            z_sign = -z_sign
         lines.append(f"    if (!{call}) return;")
         if surface.inner_semi_diameter_mm:
             lines.append(f"    if (!misses_hole({float_text(surface.inner_semi_diameter_mm)}, {where})) return;")

@@ -28,7 +28,7 @@ def plot_yield(study: ToleranceStudy, axes: Axes) -> None:
         axes.plot(np.sort(study.measure(name))[::-1], share, color=colour, label=MEASURES[name])
         axes.axvline(study.nominal_measure(name), color=colour, linestyle=":", linewidth=0.9)
     axes.set_ylim(0, 102)
-    axes.set_xlabel(f"MTF at {study.frequencies_per_mm[study.main]:.4g}/mm (dotted: nominal)")
+    axes.set_xlabel(f"MTF at {study.frequencies_per_mm[study.middle_frequency]:.4g}/mm (dotted: nominal)")
     axes.set_ylabel("copies at least as good / %")
     axes.set_title("Yield")
     axes.legend()
@@ -48,19 +48,23 @@ def plot_distribution(study: ToleranceStudy, name: str, axes: Axes) -> None:
 
 def plot_fields(study: ToleranceStudy, axes: Axes) -> None:
     """Plots for each field the interquartile and the 5 to 95 % range of the MTF over the copies."""
-    values = np.nan_to_num(study.figures.mtf[..., study.main]).mean(2)
+    values = np.nan_to_num(study.figures.mtf[..., study.middle_frequency]).mean(2)
     positions = np.arange(values.shape[1])
     low, quarter, middle, three, high = np.quantile(values, [0.05, 0.25, 0.5, 0.75, 0.95], axis=0)
     axes.vlines(positions, low, high, color=style.BLUE, linewidth=1)
     axes.vlines(positions, quarter, three, color=style.BLUE, linewidth=5)
     axes.plot(positions, middle, "_", color=style.text_colour(), markersize=9, label="median")
     axes.plot(
-        positions, np.nan_to_num(study.nominal.mtf[0, ..., study.main]).mean(1), "x", color=style.RED, label="nominal"
+        positions,
+        np.nan_to_num(study.nominal.mtf[0, ..., study.middle_frequency]).mean(1),
+        "x",
+        color=style.RED,
+        label="nominal",
     )
     axes.set_xticks(positions, [f"{x:.3g}°, {y:.3g}°" for x, y in study.fields_deg])
     axes.set_xlim(-0.5, len(positions) - 0.5)
     axes.set_ylim(0, None)
-    axes.set_ylabel(f"MTF at {study.frequencies_per_mm[study.main]:.4g}/mm")
+    axes.set_ylabel(f"MTF at {study.frequencies_per_mm[study.middle_frequency]:.4g}/mm")
     axes.set_title("Fields (x, y)")
     axes.legend()
 

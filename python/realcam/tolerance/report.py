@@ -80,7 +80,7 @@ def page_of(study: ToleranceStudy, theme: str | None, loss: float) -> str:
 <div class="wide">{sensitivities}</div>
 <p class="note">Changes at the lower and the upper limit, with the compensators set; for a tolerance with a direction,
 in the one with the larger loss. The change of the spot is the larger one, that of the focal length the one at the
-upper limit. MTF is the geometric MTF at {study.frequencies_per_mm[study.main]:.4g} periods per mm
+upper limit. MTF is the geometric MTF at {study.frequencies_per_mm[study.middle_frequency]:.4g} periods per mm
 times the diffraction limit. "Allowed": the limit at which a tolerance alone costs {loss:g} of the mean MTF.</p>
 </html>
 """

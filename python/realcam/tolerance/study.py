@@ -53,7 +53,7 @@ class ToleranceStudy:
         return len(self.figures)
 
     @property
-    def main(self) -> int:
+    def middle_frequency(self) -> int:
         """Index of the middle frequency."""
         return len(self.frequencies_per_mm) // 2
 
@@ -88,11 +88,11 @@ class ToleranceStudy:
     def measure(self, name: str) -> Doubles:
         """(C,): "mtf", mean over the fields at the middle frequency; "lowest_mtf", MTF of the worst field; "spot_mm",
         largest RMS radius; "focal_length_mm"; "distortion", the largest in magnitude, signed. Raises InputError."""
-        return measured(self.figures, name, self.main)
+        return measured(self.figures, name, self.middle_frequency)
 
     def nominal_measure(self, name: str) -> float:
         """A measure, as for `measure`, of the lens without errors. Raises InputError."""
-        return float(measured(self.nominal, name, self.main)[0])
+        return float(measured(self.nominal, name, self.middle_frequency)[0])
 
     def quantiles(self, name: str, shares: ArrayLike = SHARES) -> Doubles:
         """Quantiles of a measure over the copies. shares: probabilities, 0 to 1."""
@@ -126,7 +126,7 @@ class ToleranceStudy:
 
     @cached_property
     def _sensitivities(self) -> list[Sensitivity]:
-        return sensitivities(self._evaluator, self.items, self.nominal, self.main)
+        return sensitivities(self._evaluator, self.items, self.nominal, self.middle_frequency)
 
     def worst_offenders(self, count: int = 10) -> list[Sensitivity]:
         """The `count` tolerances with the largest loss of mean MTF."""
@@ -136,7 +136,7 @@ class ToleranceStudy:
         """Limits at which each tolerance alone, at its worse limit, costs `loss` of the mean MTF, say 0.02.
 
         A tolerance that costs less at any size has the limit inf. Raises InputError."""
-        return inverse_sensitivities(self._evaluator, self.items, self.nominal, self.main, loss)
+        return inverse_sensitivities(self._evaluator, self.items, self.nominal, self.middle_frequency, loss)
 
     def summary(self) -> dict[str, Any]:
         """The study as plain values, for JSON."""
@@ -147,7 +147,7 @@ class ToleranceStudy:
             "is_whole": self.is_whole,
             "seed": self.seed,
             "fields_deg": self.fields_deg,
-            "frequency_per_mm": float(self.frequencies_per_mm[self.main]),
+            "frequency_per_mm": float(self.frequencies_per_mm[self.middle_frequency]),
             "quantiles": {
                 name: {
                     "nominal": self.nominal_measure(name),
@@ -206,8 +206,8 @@ def tolerance_study(
     Raises InputError for a tolerance or compensator that does not apply to this lens, and for a nominal lens without
     rotational symmetry or with a curved film.
     """
-    drawing = Tolerances.grade(tolerances) if isinstance(tolerances, str) else tolerances
-    if not isinstance(drawing, Tolerances):
+    limits = Tolerances.grade(tolerances) if isinstance(tolerances, str) else tolerances
+    if not isinstance(limits, Tolerances):
         raise InputError("tolerances must be a realcam.Tolerances, or the name of a grade")
     if isinstance(copies, bool) or not isinstance(copies, int) or not 1 <= copies <= MAX_COPIES:
         raise InputError(f"copies is {copies!r:.40}; expected a whole number from 1 to {MAX_COPIES}")
@@ -221,7 +221,7 @@ def tolerance_study(
         raise InputError(f'tolerances need a rotationally symmetric lens; lens "{lens.name}" is not')
     if math.isfinite(lens.film_radius_of_curvature_mm):
         raise InputError(f'tolerances need a flat film; that of lens "{lens.name}" is curved')
-    items = drawing.of(lens)
+    items = limits.of(lens)
     from ..analysis.fields import default_frequencies_per_mm, numbers_of, wavelengths_of  # brings matplotlib
 
     fields = _fields(lens, fields_deg)
@@ -248,13 +248,13 @@ def tolerance_study(
     )
     errors = errors_of(items)
     nominal = CopyFigures.joined([evaluator.judge(errors, np.zeros((1, len(errors))))])
-    sizes = drawn(items, drawing.distribution, copies, seed)
+    sizes = drawn(items, limits.distribution, copies, seed)
     parts = _evaluated(evaluator, errors, sizes, progress)
     figures = CopyFigures.joined(parts)
     done = len(figures)
     return ToleranceStudy(
         lens,
-        drawing,
+        limits,
         items,
         seed,
         fields,

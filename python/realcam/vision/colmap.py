@@ -15,7 +15,7 @@ from .conventions import relative_pose
 from .fit import fit_camera_model
 from .models import model_named
 
-NAMES = {
+COLMAP_MODELS = {
     "pinhole": "PINHOLE",
     "opencv4": "OPENCV",
     "opencv5": "FULL_OPENCV",
@@ -33,14 +33,14 @@ def save_colmap(folder: str | os.PathLike[str], pictures: Mapping[str, Camera], 
 
     Raises InputError, ImageFileError.
     """
-    fits = _Fits(model)
+    lines = _CameraLines(model)
     ids: dict[_CameraKey, int] = {}
     images = []
     for i, (name, camera) in enumerate(pictures.items(), start=1):
         camera_id = ids.setdefault(_key_of(camera), len(ids) + 1)
         images.append(image_text(i, turned(*camera.world_to_camera), camera_id, name))
-        fits.line_of(camera)
-    _write(folder, [f"{i} {fits.lines[key]}" for key, i in ids.items()], images, {})
+        lines.line_of(camera)
+    _write(folder, [f"{i} {lines.by_camera[key]}" for key, i in ids.items()], images, {})
 
 
 def save_colmap_of_rig(
@@ -52,11 +52,11 @@ def save_colmap_of_rig(
     same cameras. model: as for save_colmap. The first camera is COLMAP's reference sensor. Raises InputError and
     ImageFileError.
     """
-    fits = _Fits(model)
+    lines = _CameraLines(model)
     rig = next(iter(moments.values()), {})
     if not rig:
         raise InputError("a COLMAP model of a rig needs the pictures of at least one pose")
-    cameras = [f"{i} {fits.line_of(camera)}" for i, camera in enumerate(rig.values(), start=1)]
+    cameras = [f"{i} {lines.line_of(camera)}" for i, camera in enumerate(rig.values(), start=1)]
     first, *others = (camera.world_to_camera for camera in rig.values())
     placed = [turned(*relative_pose(pose, first)) for pose in others]
     sensors = [f"CAMERA {i} 1 {pose_text(pose)}" for i, pose in enumerate(placed, start=2)]
@@ -66,11 +66,11 @@ def save_colmap_of_rig(
         if members.keys() != rig.keys():
             raise InputError(f"moment {moment!r} has the cameras {list(members)}; the first one has {list(rig)}")
         poses = [members[name].world_to_camera for name in rig]
-        data = []
+        picture_ids = []
         for i, (name, pose) in enumerate(zip(rig, poses, strict=True), start=1):
             images.append(image_text(len(images) + 1, turned(*pose), i, f"{name}/{moment}"))
-            data.append(f"CAMERA {i} {len(images)}")
-        frames.append(f"{len(frames) + 1} 1 {pose_text(turned(*poses[0]))} {len(data)} {' '.join(data)}")
+            picture_ids.append(f"CAMERA {i} {len(images)}")
+        frames.append(f"{len(frames) + 1} 1 {pose_text(turned(*poses[0]))} {len(picture_ids)} {' '.join(picture_ids)}")
     rigs = [" ".join([f"1 {len(cameras)} CAMERA 1", *sensors])]
     _write(folder, cameras, images, {"rigs.txt": (_RIGS, rigs), "frames.txt": (_FRAMES, frames)})
 
@@ -87,22 +87,24 @@ def _key_of(camera: Camera) -> _CameraKey:
     return camera.lens, camera.film, camera.model
 
 
-class _Fits:
+class _CameraLines:
     """Lines of cameras.txt, cached for each combination of lens, film and camera model. Raises InputError."""
 
     def __init__(self, model: str) -> None:
-        if model not in NAMES:
+        if model not in COLMAP_MODELS:
             model_named(model)  # raises for an unknown name
-            raise InputError(f"COLMAP has no camera model {model}; expected one of {', '.join(NAMES)}")
+            raise InputError(f"COLMAP has no camera model {model}; expected one of {', '.join(COLMAP_MODELS)}")
         self._model = model
-        self.lines: dict[_CameraKey, str] = {}
+        self.by_camera: dict[_CameraKey, str] = {}
 
     def line_of(self, camera: Camera) -> str:
         """Returns the line of a camera without its id; fits the camera model if no equal camera has been fitted."""
         key = _key_of(camera)
-        if key not in self.lines:
-            self.lines[key] = camera_text(fit_camera_model(camera, self._model).calibration, NAMES[self._model])
-        return self.lines[key]
+        if key not in self.by_camera:
+            self.by_camera[key] = camera_text(
+                fit_camera_model(camera, self._model).calibration, COLMAP_MODELS[self._model]
+            )
+        return self.by_camera[key]
 
 
 def _write(

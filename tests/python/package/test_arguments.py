@@ -39,7 +39,7 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     ),
     (lambda: rc.Film(1, 2, (3, 4), (5, 6), 7), "Film() takes at most four arguments without a name, and five are "),
     (lambda: rc.Surface(clear_semi_diameter_mm=1, aspheric_coefficients=[1]), "aspheric_coefficients must be a dict"),
-    (lambda: rc.Lens(surfaces=[1, 2]), "surfaces must be a list, each of them a Surface; it is [1, 2]"),
+    (lambda: rc.Lens(surfaces=[1, 2]), "surfaces must be a list of items, each a Surface; it is [1, 2]"),
     (lambda: LENS.focused("near"), "focus_distance_m must be a number; it is 'near'"),
     (lambda: rc.Lens.focused(3, 2), "self must be a Lens; it is 3"),
     (lambda: LENS.spot(pattern=3), "pattern must be a text; it is 3"),

@@ -16,7 +16,10 @@ _MISSING = object()
 
 
 class Entries:
-    """A mapping of a file. Numbers may be texts, and lists of numbers may be nested or separated by blanks."""
+    """A mapping of a file. Numbers may be texts; a list of numbers may be nested, or one text with blanks or commas.
+
+    where: text before the keys in messages, such as "camera0.".
+    """
 
     def __init__(self, document: Document, values: Mapping[str, Any], where: str = "") -> None:
         self.document, self.values, self.where = document, values, where
@@ -47,14 +50,14 @@ class Entries:
         return value
 
     def numbers(self, key: str, *counts: int) -> list[float]:
-        """Returns finite numbers, as many as one of the counts says; any number of them without counts."""
+        """Returns finite numbers. counts: the permitted counts; without them, any number is permitted."""
         found = _numbers(self.values.get(key, _MISSING))
         if found is None or (counts and len(found) not in counts):
             self.fail(key, f"{' or '.join(map(str, counts))} finite numbers".strip())
         return found
 
     def matrix(self, key: str, rows: int, columns: int) -> Array:
-        """Returns a matrix, whose numbers stand in the file row by row."""
+        """Returns a matrix, whose numbers stand in the file row by row. Only their count is checked."""
         return np.array(self.numbers(key, rows * columns)).reshape(rows, columns)
 
     def size(self, *keys: str) -> tuple[int, int]:
@@ -108,7 +111,7 @@ def element_entries(document: Document, element: ET.Element) -> Entries:
 def _number(value: object) -> float | None:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         return None
-    if isinstance(value, str) and "_" in value:
+    if isinstance(value, str) and "_" in value:  # float() accepts 1_000
         return None
     try:
         number = float(value)
