@@ -313,9 +313,7 @@ def compute(kind: str, arguments: PlotArguments) -> Any:
     options = KINDS[kind].options
     for option, argument in _ARGUMENTS.items():
         if argument(arguments) is not None and option not in options:
-            raise InputError(
-                f"the plot {kind} takes no {option}, only {' and '.join(options) or 'options of the lens'}"
-            )
+            raise InputError(f"the plot {kind} takes no {option}, only {', '.join(options) or 'options of the lens'}")
     return KINDS[kind].compute(arguments)
 
 

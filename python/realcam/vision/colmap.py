@@ -6,6 +6,8 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
+
 from .._core import Camera, Film, InputError, Lens
 from ..calibration.formats.colmap import camera_text
 from ..calibration.formats.colmap_images import HEADS, image_text, pose_text, text_content
@@ -49,8 +51,8 @@ def save_colmap_of_rig(
     """Writes the files of save_colmap for a rigid rig, plus rigs.txt and frames.txt (COLMAP 3.12 and later).
 
     moments: moments[m][c] is the camera c of the rig at the moment m; its picture's path is "c/m". All moments have the
-    same cameras. model: as for save_colmap. The first camera is COLMAP's reference sensor. Raises InputError and
-    ImageFileError.
+    same cameras, with the same lenses and films, at the same poses in the rig. model: as for save_colmap. The first
+    camera is COLMAP's reference sensor. Raises InputError and ImageFileError.
     """
     lines = _CameraLines(model)
     rig = next(iter(moments.values()), {})
@@ -65,7 +67,14 @@ def save_colmap_of_rig(
     for moment, members in moments.items():
         if members.keys() != rig.keys():
             raise InputError(f"moment {moment!r} has the cameras {list(members)}; the first one has {list(rig)}")
+        for name, camera in rig.items():
+            if _key_of(members[name]) != _key_of(camera):
+                raise InputError(f"moment {moment!r}: camera {name!r} has another lens or film than in the first one")
         poses = [members[name].world_to_camera for name in rig]
+        for name, pose, expected in zip(list(rig)[1:], poses[1:], placed, strict=True):
+            # Poses are metres and cosines; beyond rounding, 1e-6 of either is a motion.
+            if np.abs(turned(*relative_pose(pose, poses[0])) - expected).max() > 1e-6:
+                raise InputError(f"moment {moment!r}: camera {name!r} has moved in the rig, which must be rigid")
         picture_ids = []
         for i, (name, pose) in enumerate(zip(rig, poses, strict=True), start=1):
             images.append(image_text(len(images) + 1, turned(*pose), i, f"{name}/{moment}"))

@@ -174,7 +174,10 @@ def test_examples_are_command_lines(name: str, example: str) -> None:
         ("lens plot mtf tessar-50mm --fields-deg 1,a", '"a" is not a number'),
         ("lens plot mtf tessar-50mm --theme blue", "expected light or dark"),
         ("lens plot mtf tessar-50mm --method fft", "expected diffraction or geometric"),
-        ("lens plot spot tessar-50mm --method fft", "the plot spot takes no --method, only --fields-deg and"),
+        (
+            "lens plot spot tessar-50mm --method fft",
+            "the plot spot takes no --method, only --fields-deg, --wavelengths, --object",
+        ),
         ("lens plot depth-of-field tessar-50mm --fields-deg 5", "takes no --fields-deg, only options of the lens"),
         ("lens plot mtf tessar-50mm --frequencies 10,20", "of one frequency; 2 are given"),
         ("lens report tessar-50mm -o x.svg", r"expected \.pdf or \.html"),

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
+from realcam.vision import save_colmap_of_rig
 
 from .. import scenes
 from .test_vision import quaternion_matrix
@@ -215,6 +216,18 @@ def test_frames_of_colmap_put_its_cameras_where_they_are(tmp_path: Path) -> None
                 # The error of 15 digits of numbers of a few metres.
                 assert found[0] == pytest.approx(true[0], abs=1e-13)
                 assert found[1] == pytest.approx(true[1], abs=1e-13)
+
+
+def test_a_rig_of_colmap_whose_cameras_move_or_change_is_refused(tmp_path: Path) -> None:
+    left = rc.Camera(rc.Lens.load("tessar-50mm"))
+    right = left.replace(position=(0.1, 0.0, 0.0), look_at=(0.1, 0.0, -1.0))
+    for name, other, message in (
+        ("moved", right.replace(position=(0.2, 0.0, 0.0)), "camera 'right' has moved in the rig"),
+        ("stopped down", right.replace(lens=right.lens.stopped_down(8)), "has another lens or film"),
+    ):
+        moments = {"first": {"left": left, "right": right}, name: {"left": left, "right": other}}
+        with pytest.raises(rc.InputError, match=message):
+            save_colmap_of_rig(tmp_path, moments, "pinhole")
 
 
 def test_colmap_itself_reads_the_model_of_a_rig(tmp_path: Path) -> None:
