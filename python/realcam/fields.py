@@ -113,25 +113,21 @@ def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field,
 def fields_of_angles(lens: Lens, angles_deg: Sequence[float], object_distance_m: float | None) -> tuple[Field, ...]:
     """Returns field points by their angles in object space. Raises InputError if no light of an angle passes."""
     return tuple(
-        Field(angle, _meridional_spot(lens, angle, object_distance_m, lens.wavelength_nm).chief_ray_mm[1], None)
-        for angle in angles_deg
+        Field(angle, _meridional_spot(lens, angle, object_distance_m).chief_ray_mm[1], None) for angle in angles_deg
     )
 
 
-def angle_of_height(
-    lens: Lens, height_mm: float, object_distance_m: float | None = None, wavelength_nm: float | None = None
-) -> tuple[float, float]:
+def angle_of_height(lens: Lens, height_mm: float, object_distance_m: float | None = None) -> tuple[float, float]:
     """Returns the field angle, degrees, whose chief ray reaches a height on the film, mm, and that height.
 
     If the illuminated field ends below that height, returns the largest angle at which at least a quarter of the rays
     that pass on the axis still pass, and its height. Raises InputError if no light passes the lens.
     """
-    wavelength = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
     min_rays = 1  # rays that must pass at an angle inside the field
 
     def height_error(angle: float) -> float:
         try:
-            spot = _meridional_spot(lens, angle, object_distance_m, wavelength)
+            spot = _meridional_spot(lens, angle, object_distance_m)
         except InputError:  # beyond the edge of the lens's field
             return math.nan
         return abs(spot.chief_ray_mm[1]) - height_mm if _passing(spot) >= min_rays else math.nan
@@ -139,8 +135,8 @@ def angle_of_height(
     at_low = height_error(0.0)
     if math.isnan(at_low):
         raise InputError(f'no light passes lens "{lens.name}"')
-    min_rays = max(1, _passing(_meridional_spot(lens, 0.0, object_distance_m, wavelength)) // 4)
-    focal_length = lens.first_order(wavelength).effective_focal_length_mm
+    min_rays = max(1, _passing(_meridional_spot(lens, 0.0, object_distance_m)) // 4)
+    focal_length = lens.first_order().effective_focal_length_mm
     guess = math.degrees(math.atan(height_mm / abs(focal_length)))
     low, step, growth = 0.0, min(max(guess, 1e-3), _LARGEST_STEP_DEG), 2.0
     while at_low < 0:
@@ -156,11 +152,11 @@ def angle_of_height(
         else:
             low, at_low = high, at_high
             step = min(growth * step, _LARGEST_STEP_DEG)
-    return low, abs(_meridional_spot(lens, low, object_distance_m, wavelength).chief_ray_mm[1])
+    return low, abs(_meridional_spot(lens, low, object_distance_m).chief_ray_mm[1])
 
 
-def _meridional_spot(lens: Lens, angle_deg: float, object_distance_m: float | None, wavelength_nm: float) -> Spot:
-    return lens.spot(angle_deg, object_distance_m=object_distance_m, wavelength_nm=wavelength_nm, pupil=_PROBES)
+def _meridional_spot(lens: Lens, angle_deg: float, object_distance_m: float | None) -> Spot:
+    return lens.spot(angle_deg, object_distance_m=object_distance_m, pupil=_PROBES)
 
 
 def _passing(spot: Spot) -> int:

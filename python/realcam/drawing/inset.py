@@ -14,14 +14,13 @@ from .style import Style, ray_colour
 _STEPS = (1, 2, 5)  # mantissas of magnifications and of lengths of scale bars
 
 
-def shown_in_insets(section: CrossSection, max_count: int = 4) -> list[Field]:
-    """Returns the fields with an inset, sorted by height on the film: all with rays, or max_count regularly chosen
-    ones."""
+def shown_in_insets(section: CrossSection) -> list[Field]:
+    """Returns the fields with an inset, sorted by height on the film: at most four of those with rays."""
     with_rays = [f for f in section.fields if any(len(b.paths_mm) for b in section.bundles if b.field == f)]
     with_rays.sort(key=lambda field: field.film_height_mm)
-    if len(with_rays) <= max_count:
+    if len(with_rays) <= 4:
         return with_rays
-    return [with_rays[i] for i in np.linspace(0, len(with_rays) - 1, max_count).round().astype(int)]
+    return [with_rays[i] for i in np.linspace(0, len(with_rays) - 1, 4).round().astype(int)]
 
 
 def letter_of(section: CrossSection, field: Field) -> str:

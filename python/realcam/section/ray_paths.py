@@ -136,8 +136,9 @@ def _film_rays(lens: Lens, height_mm: float, angle: Array) -> tuple[Array, Array
     return origins, np.column_stack([zero, np.sin(angle), -np.cos(angle)])
 
 
-def _passing_angles(lens: Lens, height_mm: float, wavelength_nm: float, count: int = 2001) -> Array:
+def _passing_angles(lens: Lens, height_mm: float, wavelength_nm: float) -> Array:
     """Returns the angles, rad, in the meridional plane at which rays from a film point pass the lens."""
+    count = 2001
     last = lens.surfaces[-1].clear_semi_diameter_mm
     ends = np.arctan2(np.array([-last, last]) * 1.05 - height_mm, lens.film_distance_mm)
     angle = np.linspace(ends[0], ends[1], count)

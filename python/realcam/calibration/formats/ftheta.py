@@ -80,8 +80,10 @@ def ftheta_of(terms: Terms) -> FTheta:
     return FTheta("ANGLE_TO_PIXELDIST", coefficients, (u0, v0), cde, projection.largest_angle)
 
 
-def inverse_coefficients(ftheta: FTheta, degree: int = 5) -> list[float]:
-    """Returns the polynomial of the other direction that fits best up to the largest angle; it is no exact inverse."""
+def inverse_coefficients(ftheta: FTheta) -> list[float]:
+    """Returns the polynomial of degree 5 of the other direction that fits best up to the largest angle; it is no exact
+    inverse."""
+    powers = np.arange(1, 6)
     model = MODEL_OF_DIRECTION[ftheta.direction](ftheta.coefficients[1:], np.eye(3), ftheta.largest_angle)
     angles = np.linspace(0, min(ftheta.largest_angle, model.largest_angle) * (1 - 1e-9), 512)
     points = np.column_stack([np.sin(angles), np.zeros_like(angles), np.cos(angles)])
@@ -89,6 +91,6 @@ def inverse_coefficients(ftheta: FTheta, degree: int = 5) -> list[float]:
     x, y = (distances, angles) if ftheta.direction == "ANGLE_TO_PIXELDIST" else (angles, distances)
     is_valid = np.isfinite(x) & np.isfinite(y)
     unit = float(x[is_valid].max())
-    columns = (x[is_valid, None] / unit) ** np.arange(1, degree + 1)
+    columns = (x[is_valid, None] / unit) ** powers
     fitted, *_ = np.linalg.lstsq(columns, y[is_valid], rcond=None)
-    return [0.0, *(fitted / unit ** np.arange(1, degree + 1)).tolist()]
+    return [0.0, *(fitted / unit**powers).tolist()]
