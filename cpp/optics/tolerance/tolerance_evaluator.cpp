@@ -8,7 +8,7 @@
 #include "../../math/hypotenuse.hpp"
 #include "../lens/paraxial.hpp"
 #include "film_setting.hpp"
-#include "lens_error.hpp"
+#include "perturbation.hpp"
 
 namespace realcam {
 
