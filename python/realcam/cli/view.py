@@ -14,7 +14,7 @@ from .grouped_options import grouped
 from .shot_options import shot_options, words_of
 
 # Only the camera's options: a shot saved by the bench contains them all.
-ShotOptions = shot_options("ShotOptions", panels=("Camera",))
+ShotOptions = shot_options(panels=("Camera",))
 
 
 @grouped
