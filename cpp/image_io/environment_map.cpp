@@ -47,8 +47,8 @@ private:
     int size_;  // pixels along an edge of a face
 };
 
-/// Resamples a cube map to a latitude-longitude picture, with four samples per pixel, and about as many pixels along
-/// the horizon as the cube has.
+/// Resamples a cube map to a latitude-longitude picture, with four samples per pixel, and as many pixels along the
+/// horizon as the cube has.
 Environment lat_long_of_cube(const Environment& file, const KeepGoing& keep_going) {
     if (file.height != 6 * std::int64_t{file.width})
         throw Error("is declared to be a cube map, and has " + std::to_string(file.width) + " x " +
@@ -79,7 +79,7 @@ Environment lat_long_of_cube(const Environment& file, const KeepGoing& keep_goin
 
 Environment environment_of(EnvironmentMap map, Environment file, const KeepGoing& keep_going) {
     if (map == EnvironmentMap::cube) return lat_long_of_cube(file, keep_going);
-    if (map == EnvironmentMap::lat_long)
+    if (map == EnvironmentMap::lat_long)  // the middle column looks to +z in OpenEXR, and to -z here
         for (int row = 0; row < file.height; ++row) {
             const auto begin = file.pixels.begin() + std::ptrdiff_t{row} * file.width;
             std::rotate(begin, begin + file.width / 2, begin + file.width);

@@ -19,8 +19,8 @@ namespace realcam::shot {
 /// Time in s at which the shutter of a video's frame opens. For frame 1 this is the camera's own opening time.
 double frame_opens_s(const Camera& camera, int number, double frames_per_second);
 
-/// Camera for a picture whose shutter opens at `opens_s`: with the rings and dials of the keyframes at that time, and
-/// with the hand shake during the exposure. Throws InputError.
+/// Camera for a picture whose shutter opens at `opens_s`: with the lens and exposure settings of the keyframes at that
+/// time, and with the hand shake during the exposure. Throws InputError.
 Camera camera_at(Camera camera, const std::vector<CameraKey>& keys, const Shake& shake, double opens_s);
 
 /// Frames of a video from which its effects are planned: the first, the middle and the last one, and the first one
@@ -28,7 +28,7 @@ Camera camera_at(Camera camera, const std::vector<CameraKey>& keys, const Shake&
 std::vector<int> frames_to_plan(const std::vector<int>& numbers, const Camera& camera,
                                 const std::vector<CameraKey>& keys, double frames_per_second);
 
-/// Random seed of a frame, different for all frames of a shot. `seed`: of the shot. Shots with adjacent seeds do not
+/// Random seed of a frame, different for each frame of a shot. `seed`: of the shot. Shots with adjacent seeds do not
 /// systematically share frame seeds.
 std::uint32_t frame_seed(std::uint32_t seed, int number);
 

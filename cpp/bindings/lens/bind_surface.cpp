@@ -209,9 +209,9 @@ void bind_surface(py::module_& m) {
             "Radius of curvature in the xz plane, of a biconic or toroid.")
         .def_property_readonly(
             "conic_x", [](const Surface& s) { return s.form.conic_x; }, "Conic constant in the xz plane, of a biconic.")
-        .def_property_readonly("radial_terms", &radial_terms_of,
+        .def_property_readonly("radial_terms", &stored_radial_terms,
                                "{power of r: coefficient in mm^(1 - power)}, without those that are 0.")
-        .def_property_readonly("xy_terms", &xy_terms_of, "{(i, j): coefficient of x^i y^j}.")
+        .def_property_readonly("xy_terms", &stored_xy_terms, "{(i, j): coefficient of x^i y^j}.")
         .def_property_readonly(
             "aperture", &aperture_of,
             "Shape of the clear aperture, see Surface(); empty: the circle of the clear semi-diameter.")

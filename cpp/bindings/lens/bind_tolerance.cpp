@@ -19,7 +19,7 @@ using namespace py::literals;
 
 namespace {
 
-/// Names of manufacturing errors, in the order of ErrorKind.
+/// Names of manufacturing errors, in the order of PerturbationKind.
 constexpr std::array<std::string_view, 16> kKinds = {
     "radius",         "radius_percent", "radius_fringes",     "thickness",          "index",
     "abbe_percent",   "surface_tilt_x", "surface_tilt_y",     "surface_decentre_x", "surface_decentre_y",
@@ -29,14 +29,14 @@ constexpr std::array<std::string_view, 16> kKinds = {
 /// Manufacturing errors as tuples (kind, first, last): indices of the affected surfaces, from 0.
 using ErrorNames = std::vector<std::tuple<std::string, int, int>>;
 
-std::vector<LensError> errors_from(const ErrorNames& names) {
-    std::vector<LensError> errors;
+std::vector<Perturbation> perturbations_from(const ErrorNames& names) {
+    std::vector<Perturbation> perturbations;
     for (const auto& [name, first, last] : names) {
         const auto* const kind = std::find(kKinds.begin(), kKinds.end(), name);
         if (kind == kKinds.end()) throw InputError("unknown kind of error \"" + name + "\"");
-        errors.push_back({static_cast<ErrorKind>(kind - kKinds.begin()), first, last});
+        perturbations.push_back({static_cast<PerturbationKind>(kind - kKinds.begin()), first, last});
     }
-    return errors;
+    return perturbations;
 }
 
 using Numbers = InputArray<double>;
@@ -74,10 +74,10 @@ void check_sizes(const Numbers& sizes, int dimensions, std::size_t error_count) 
 /// docstring.
 Typed<"dict[str, NDArray[float64]]", py::dict> evaluate(const ToleranceEvaluator& evaluator, const ErrorNames& names,
                                                         const Numbers& sizes) {
-    const std::vector<LensError> errors = errors_from(names);
-    check_sizes(sizes, 2, errors.size());
+    const std::vector<Perturbation> perturbations = perturbations_from(names);
+    check_sizes(sizes, 2, perturbations.size());
     const auto count = static_cast<std::size_t>(sizes.shape(0));
-    const double* rows = sizes.data();
+    const std::span<const double> rows(sizes.data(), static_cast<std::size_t>(sizes.size()));
     std::vector<CopyFigures> copies(count);
     {
         const Unlocked unlocked;
@@ -85,7 +85,8 @@ Typed<"dict[str, NDArray[float64]]", py::dict> evaluate(const ToleranceEvaluator
         // number of threads.
         parallel_ray_loop(heed_signals, 1).for_all(count, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i)
-                copies[i] = evaluator(with_errors(evaluator.nominal(), errors, rows + i * errors.size()));
+                copies[i] = evaluator(perturbed(evaluator.nominal(), perturbations,
+                                                rows.subspan(i * perturbations.size(), perturbations.size())));
         });
     }
     const std::size_t fields = evaluator.request().fields.size(), frequencies = evaluator.request().frequencies.size();
@@ -124,12 +125,13 @@ Typed<"dict[str, NDArray[float64]]", py::dict> evaluate(const ToleranceEvaluator
 LensSystem make_copy(const ToleranceEvaluator& evaluator, const ErrorNames& names, const Numbers& sizes,
                      double film_shift, std::pair<double, double> film_slope,
                      std::tuple<double, double, double> element_shift) {
-    const std::vector<LensError> errors = errors_from(names);
-    check_sizes(sizes, 1, errors.size());
+    const std::vector<Perturbation> perturbations = perturbations_from(names);
+    check_sizes(sizes, 1, perturbations.size());
     const auto& [x, y, z] = element_shift;
     const CopySettings settings{film_shift, {film_slope.first, film_slope.second}, {x, y, z}};
-    LensSystem copy = with_settings(with_errors(evaluator.nominal(), errors, sizes.data()), settings,
-                                    evaluator.request().compensators);
+    LensSystem copy = with_settings(
+        perturbed(evaluator.nominal(), perturbations, {sizes.data(), static_cast<std::size_t>(sizes.size())}), settings,
+        evaluator.request().compensators);
     validate_with_film(copy);
     return copy;
 }

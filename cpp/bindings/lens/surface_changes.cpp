@@ -199,14 +199,14 @@ std::string form_name(const Surface& surface) {
     return "conic";
 }
 
-std::map<int, double> radial_terms_of(const Surface& surface) {
+std::map<int, double> stored_radial_terms(const Surface& surface) {
     std::map<int, double> terms;
     for (std::size_t i = 0; i < surface.form.radial.size(); ++i)
         if (surface.form.radial[i] != 0) terms[static_cast<int>(i) + 1] = surface.form.radial[i];
     return terms;
 }
 
-std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface) {
+std::map<std::pair<int, int>, double> stored_xy_terms(const Surface& surface) {
     std::map<std::pair<int, int>, double> terms;
     for (const XyTerm& term : surface.form.xy) terms[{term.x, term.y}] = term.coefficient;
     return terms;

@@ -42,9 +42,9 @@ void change_form(Surface& surface, const FormChanges& changes);
 /// Returns "conic", "biconic" or "toroid".
 std::string form_name(const Surface& surface);
 /// Returns coefficients of r^N by the power N, without those that are 0.
-std::map<int, double> radial_terms_of(const Surface& surface);
+std::map<int, double> stored_radial_terms(const Surface& surface);
 /// Returns coefficients of x^i y^j by the powers (i, j).
-std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface);
+std::map<std::pair<int, int>, double> stored_xy_terms(const Surface& surface);
 /// Returns the terms of the kind at an index of kFormTerms; empty if the surface has no such terms.
 FormDict terms_of(const Surface& surface, std::size_t kind);
 /// Returns the shape of the aperture; empty if it is the circle of the clear semi-diameter.
@@ -81,7 +81,7 @@ Surface changed_surface(Surface surface, const SurfaceChanges& changes);
 
 /// The type int, for parameter packs with one int for each type.
 template <class>
-using Index = int;
+using IntFor = int;
 /// Type of a dict of terms, for parameter packs with one dict for each index of kFormTerms.
 template <std::size_t>
 using TermsDict = SurfaceChanges::Dict;
@@ -98,7 +98,7 @@ void def(std::index_sequence<kind...>, py::class_<T>& type, const char* name, Fu
     using namespace py::literals;
     type.def(
         name,
-        [function](const T& self, Index<First>... indices, C::Number radius, C::Number thickness,
+        [function](const T& self, IntFor<First>... indices, C::Number radius, C::Number thickness,
                    const MediumChange& material, C::Number clear, C::Number conic, const C::RadialTerms& aspheric,
                    C::Number inner, const C::Name& surface_type, const Typed<"str | Coating | None">& coating,
                    const C::Numbers& decentre, const C::Numbers& tilt, std::optional<bool> returns, const C::Name& form,

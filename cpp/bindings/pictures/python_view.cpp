@@ -51,6 +51,8 @@ public:
             const py::array_t<float> pixels(shape, exposure_lux_s);
             const auto developed =
                 view_->attr("developed")(pixels, iso).cast<py::array_t<std::uint8_t, py::array::c_style>>();
+            if (developed.size() != static_cast<py::ssize_t>(3 * count))
+                throw InputError("a view must return three 8-bit values for each pixel");
             std::memcpy(codes, developed.data(), 3 * count);
         });
     }

@@ -14,7 +14,7 @@ Vec2f in_float(Vec2<double> film) {
     return {static_cast<float>(film.x), static_cast<float>(film.y)};
 }
 
-constexpr double kMetre_mm = 1000;
+constexpr double kMmPerMetre = 1000;
 
 }  // namespace
 
@@ -23,26 +23,28 @@ CalibratedProjection::CalibratedProjection(std::shared_ptr<const ProjectionRays>
 
 std::optional<FilmProjection> CalibratedProjection::ray(Vec2<double> film) const {
     const BundleMotionsView view = motions_.view();
-    const Vec2f at = in_float(inverted(film));
+    const Vec2f lens_film = in_float(inverted(film));
     const std::optional<FilmProjection> ray = lens_->ray(film);
-    if (!ray || !is_defined(view, at)) return std::nullopt;
-    const BundleMotion motion = bundle_motion(view, at);
+    if (!ray || !is_defined(view, lens_film)) return std::nullopt;
+    const BundleMotion motion = bundle_motion(view, lens_film);
+    // Light is relative to that of the film's centre.
     const float central_gain = bundle_motion(view, {0, 0}).gain();
-    return FilmProjection{kMetre_mm * moved_point(view, motion, (1 / kMetre_mm) * ray->origin),
+    return FilmProjection{kMmPerMetre * moved_point(view, motion, (1 / kMmPerMetre) * ray->origin),
                           rotated(motion.rotation(), ray->direction),
                           ray->light * static_cast<double>(motion.gain() / central_gain)};
 }
 
 std::optional<Vec2<double>> CalibratedProjection::project(Vec3d point) const {
     const BundleMotionsView view = motions_.view();
-    const std::optional<Vec2<double>> film =
-        calibrated_film_point(view, (1 / kMetre_mm) * point, false, [&](Vec3d moved) -> std::optional<Vec2<double>> {
-            const std::optional<Vec2<double>> landing = lens_->project(kMetre_mm * moved);
+    constexpr bool kIsDirection = false;
+    const std::optional<Vec2<double>> lens_film = calibrated_film_point(
+        view, (1 / kMmPerMetre) * point, kIsDirection, [&](Vec3d moved) -> std::optional<Vec2<double>> {
+            const std::optional<Vec2<double>> landing = lens_->project(kMmPerMetre * moved);
             if (!landing) return std::nullopt;
             return inverted(*landing);
         });
-    if (!film || !is_defined(view, in_float(*film))) return std::nullopt;
-    return inverted(*film);
+    if (!lens_film || !is_defined(view, in_float(*lens_film))) return std::nullopt;
+    return inverted(*lens_film);
 }
 
 }  // namespace realcam

@@ -8,6 +8,10 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Distance from the lens, mm, from which on the entrance pupil is no reference point of rays, as for a lens that is
+/// telecentric on the object's side.
+inline constexpr double kFarPupil_mm = 1e6;
+
 /// Centroid ray of a film point: the mean of the rays that reach it. In each plane across it the film point sees a spot
 /// of light, whose centroid lies on this straight line because each ray is straight.
 struct CentroidRay {

@@ -33,8 +33,7 @@ ProjectionGrid::ProjectionGrid(const CameraSetup& setup, ProjectionRay ray, cons
     const RaysFromFilm from_film(lens, lens.wavelength_nm);
     const ParabasalRays middle = parabasal_rays(lens, lens.wavelength_nm);
     reference_ = entrance_pupil_centre(middle, from_film.scene_index());
-    constexpr double kFar = 1e6;  // mm
-    if (!(length(reference_ - middle.chief.scene) < kFar)) reference_ = middle.chief.scene;
+    if (!(length(reference_ - middle.chief.scene) < kFarPupil_mm)) reference_ = middle.chief.scene;
     const PupilGridView pupil = setup.pupil_grid()->view();
     const CentroidRays centroid_rays(lens, lens.focus_distance - film_z_ + reference_.z);
     if (ray == ProjectionRay::chief) {
@@ -140,18 +139,20 @@ void ProjectionGrid::store(std::vector<Grid::Values> rays) {
     const Vec2<double> size = cell_size();
     const double column = std::clamp(-area_.least.x / size.x, 0.0, static_cast<double>(kColumns));
     const double row = std::clamp(-area_.least.y / size.y, 0.0, static_cast<double>(kRows));
-    double middle = Grid(kColumns + 1, kRows + 1, rays).at(column, row).value[kLight];
-    if (!(middle > 0)) {  // no light in the middle of the film: relative to the brightest node instead
-        middle = 0;
-        for (const Grid::Values& ray : rays) middle = std::max(middle, ray[kLight]);
+    double centre_light = Grid(kColumns + 1, kRows + 1, rays).at(column, row).value[kLight];
+    if (!(centre_light > 0)) {  // relative to the brightest node instead
+        centre_light = 0;
+        for (const Grid::Values& ray : rays) centre_light = std::max(centre_light, ray[kLight]);
     }
     for (Grid::Values& ray : rays) {
         ends_in_film_ |= !std::isfinite(ray[kLight]);
-        ray[kLight] /= middle;
+        ray[kLight] /= centre_light;
     }
     rays_.emplace(kColumns + 1, kRows + 1, rays);
 }
 
+// Film points of the interface have the axes of the developed picture; the grid has those of the lens, which inverts
+// it.
 std::optional<FilmProjection> ProjectionGrid::ray(Vec2<double> film) const {
     const Vec2<double> size = cell_size();
     const double column = (-film.x - area_.least.x) / size.x, row = (-film.y - area_.least.y) / size.y;

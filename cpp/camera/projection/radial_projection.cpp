@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -73,8 +74,7 @@ RadialProjection::RadialProjection(const CameraSetup& setup, ProjectionRay ray, 
     const LensSystem& lens = camera.lens;
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     const double pupil = data.entrance_pupil_position;
-    constexpr double kFar = 1e6;  // mm
-    vertex_ = std::fabs(pupil) < kFar ? pupil : 0;
+    vertex_ = std::fabs(pupil) < kFarPupil_mm ? pupil : 0;
     reference_ = lens.film_position() - vertex_;
     focus_ = lens.focus_distance - reference_;
     const CameraView view = setup.view(camera.pose.position_m);
@@ -120,18 +120,18 @@ std::optional<Vec2<double>> RadialProjection::project(Vec3d point) const {
     const double away = hypotenuse(point.x, point.y);
     const std::optional<double> radius = film_radius_of({away, -point.z - reference_});
     if (!radius) return std::nullopt;
-    const double share = away > 0 ? sign_ * *radius / away : 0;
-    return Vec2<double>{share * point.x, share * point.y};
+    const double scale = away > 0 ? sign_ * *radius / away : 0;
+    return Vec2<double>{scale * point.x, scale * point.y};
 }
 
 std::optional<MeridionalRay> RadialProjection::at(double film_radius) const {
     const double step = film_radius / max_radius_ * kSteps;
     const auto k = static_cast<std::size_t>(std::min(static_cast<int>(step), kSteps - 1));
-    const double share = step - static_cast<double>(k), angle = angle_.at(step).value;
+    const double fraction = step - static_cast<double>(k), angle = angle_.at(step).value;
     if (!std::isfinite(angle)) return std::nullopt;
     const MeridionalRay &a = rays_[k], &b = rays_[k + 1];
-    return MeridionalRay{angle, offset_.at(step).value, a.start + share * (b.start - a.start),
-                         a.light + share * (b.light - a.light)};
+    return MeridionalRay{angle, offset_.at(step).value, a.start + fraction * (b.start - a.start),
+                         a.light + fraction * (b.light - a.light)};
 }
 
 std::optional<double> RadialProjection::film_radius_of(MeridionalPoint point) const {

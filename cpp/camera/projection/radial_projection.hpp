@@ -1,5 +1,4 @@
 #pragma once
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -36,7 +35,6 @@ public:
 
 private:
     static constexpr int kSteps = 256;  ///< uniform steps of the film radius, from 0 to max_radius_
-    static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
     /// Thin lens: position of its pupil, from the front vertex; and image distance, mm.
     struct ThinLensPosition {

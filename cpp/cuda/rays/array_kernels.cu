@@ -20,8 +20,8 @@ __global__ void rays_to_scene(const __grid_constant__ RaysToScene rays) {
     to[0] = rays.camera_position.x + static_cast<double>(from[0]);
     to[1] = rays.camera_position.y + static_cast<double>(from[1]);
     to[2] = rays.camera_position.z + static_cast<double>(from[2]);
-    const double share = static_cast<double>(rays.shares[ray]);
-    rays.times[ray] = rays.exposure.begin_s + share * (rays.exposure.end_s - rays.exposure.begin_s);
+    const double fraction = static_cast<double>(rays.shares[ray]);
+    rays.times[ray] = rays.exposure.begin_s + fraction * (rays.exposure.end_s - rays.exposure.begin_s);
     rays.pixels[ray] = static_cast<int>((rays.range.first + ray) / rays.spp);
 }
 

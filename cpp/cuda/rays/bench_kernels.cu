@@ -16,12 +16,18 @@
 namespace realcam {
 namespace {
 
+constexpr float kImpossibleSum = 12345.678f;  ///< comparing with it keeps the compiler from removing the work
 constexpr int kRounds = 5;  ///< number of launches; the fastest one counts
 
 /// Ray of a benchmark: in the lens frame (mm) or in render space (m).
 struct BenchRay {
     Vec3f origin, direction;
+
+    /// False for a camera ray that does not pass the lens.
+    __device__ bool exists() const { return dot(direction, direction) > 0; }
 };
+
+constexpr std::uint32_t kBounceSeed = 1;  ///< other than that of camera rays, 0
 
 /// Returns the block with one sample of a pixel.
 __device__ SampleBlock<1> block_of(const CameraView& camera, std::int32_t pixel, std::uint32_t sample) {
@@ -39,7 +45,7 @@ __device__ SampleBlock<1> block_of(const CameraView& camera, std::int32_t pixel,
 template <LensKind lens_kind>
 __global__ void generate(const __grid_constant__ CameraView camera, int samples, unsigned long long* passed,
                          float* sink) {
-    const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
+    const auto pixel = static_cast<std::int32_t>(thread_index());
     std::uint32_t count = 0;
     float sum = 0;
     for (int s = 0; s < samples && pixel < camera.width * camera.height; ++s) {
@@ -49,12 +55,12 @@ __global__ void generate(const __grid_constant__ CameraView camera, int samples,
         sum += rays.weight[0] + rays.origin.x[0] + rays.direction.x[0];
     }
     atomicAdd(passed, static_cast<unsigned long long>(count));
-    if (sum == 12345.678f) *sink = sum;  // never true, but keeps the compiler from removing the work
+    if (sum == kImpossibleSum) *sink = sum;
 }
 
 /// Samples the rays that generate_rays traces through the lens.
 __global__ void sample_lens_rays(const __grid_constant__ CameraView camera, BenchRay* rays) {
-    const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
+    const auto pixel = static_cast<std::int32_t>(thread_index());
     if (pixel >= camera.width * camera.height) return;
     const SampleBlock<1> block = block_of(camera, pixel, 0);
     const Vec2f film = film_point(camera, block.column[0], block.row[0], block.random(0, dimension::film));
@@ -67,7 +73,7 @@ __global__ void sample_lens_rays(const __grid_constant__ CameraView camera, Benc
 template <LensKind lens_kind>
 __global__ void trace(const __grid_constant__ CameraView camera, const BenchRay* rays, int repeats,
                       unsigned long long* passed, float* sink) {
-    const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
+    const auto pixel = static_cast<std::int32_t>(thread_index());
     if (pixel >= camera.width * camera.height) return;
     const BenchRay start = rays[pixel];
     std::uint32_t count = 0;
@@ -84,16 +90,19 @@ __global__ void trace(const __grid_constant__ CameraView camera, const BenchRay*
         sum += inside.origin.x[0] + inside.direction.x[0];
     }
     atomicAdd(passed, static_cast<unsigned long long>(count));
-    if (sum == 12345.678f) *sink = sum;
+    if (sum == kImpossibleSum) *sink = sum;
 }
 
-/// Writes one camera ray per pixel.
-__global__ void camera_rays(const __grid_constant__ CameraView camera, BenchRay* rays) {
-    const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
+/// Writes one camera ray per pixel, which does not exist if the lens stops it. `passed`: is increased by the number of
+/// those that exist.
+template <LensKind lens_kind>
+__global__ void camera_rays(const __grid_constant__ CameraView camera, BenchRay* rays, unsigned long long* passed) {
+    const auto pixel = static_cast<std::int32_t>(thread_index());
     if (pixel >= camera.width * camera.height) return;
     CameraRays<1> made;
-    generate_rays<LensKind::rotational>(camera, block_of(camera, pixel, 0), made);
-    rays[pixel] = {made.origin[0], made.direction[0]};
+    generate_rays<lens_kind>(camera, block_of(camera, pixel, 0), made);
+    rays[pixel] = {made.origin[0], made.passed[0] ? made.direction[0] : Vec3f{0, 0, 0}};
+    if (made.passed[0]) atomicAdd(passed, 1ull);
 }
 
 /// Replaces each ray by one that is scattered at its hit, cosine-weighted or uniformly over the hemisphere. Rays
@@ -101,13 +110,13 @@ __global__ void camera_rays(const __grid_constant__ CameraView camera, BenchRay*
 template <bool instanced>
 __global__ void bounce(const __grid_constant__ SceneView scene, SceneBvhView bvh, BenchRay* rays, int count,
                        bool uniform) {
-    const int i = static_cast<int>(blockIdx.x * kBlockSize + threadIdx.x);
-    if (i >= count) return;
+    const int i = static_cast<int>(thread_index());
+    if (i >= count || !rays[i].exists()) return;
     const BenchRay ray = rays[i];
     const Hit hit = closest_hit<instanced>(bvh, ray.origin, ray.direction, kFarAway);
     if (hit.triangle == kNoTriangle) return;
     const SurfacePoint point = surface_point<SceneKind::plain>(scene, hit, ray.origin, ray.direction, 0.0f);
-    const Vec2f u = sample_2d(pixel_stream(i, 1), 0, 7);
+    const Vec2f u = sample_2d(pixel_stream(i, kBounceSeed), 0, dimension::first_bounce);
     Vec3f direction = sample_cosine(point.geometric_normal, u);
     if (uniform) {
         direction = sample_sphere(u);
@@ -119,8 +128,8 @@ __global__ void bounce(const __grid_constant__ SceneView scene, SceneBvhView bvh
 /// Finds the closest hit of each ray.
 template <bool instanced>
 __global__ void hit_all(SceneBvhView bvh, const BenchRay* rays, int count, float* distances) {
-    const int i = static_cast<int>(blockIdx.x * kBlockSize + threadIdx.x);
-    if (i >= count) return;
+    const int i = static_cast<int>(thread_index());
+    if (i >= count || !rays[i].exists()) return;
     const BenchRay ray = rays[i];
     distances[i] = closest_hit<instanced>(bvh, ray.origin, ray.direction, kFarAway).distance;
 }
@@ -201,16 +210,27 @@ HitRates hit_rates(int ordinal, const Assembly& scene, const Camera& camera, Pup
         return arrays.copy(from, count, stream);
     });
     const int pixels = view.width * view.height;
+    const LensKind kind = view.lens.kind;
     const bool instanced = on_device.view().instance_count > 0;
     DeviceArray<BenchRay> rays(static_cast<std::size_t>(pixels));
     DeviceArray<float> distances(static_cast<std::size_t>(pixels));
+    DeviceArray<unsigned long long> passed(1);
+    unsigned long long ray_count = 0;
     const auto measure = [&] {
-        return rate_of(stream, pixels, [&] {
+        return rate_of(stream, static_cast<double>(ray_count), [&] {
             (instanced ? hit_all<true> : hit_all<false>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(
                 on_device.bvh(), rays.data(), pixels, distances.data());
         });
     };
-    const auto shoot = [&] { camera_rays<<<blocks_for(pixels), kBlockSize, 0, stream>>>(view, rays.data()); };
+    const auto shoot = [&] {
+        passed.clear(stream);
+        (kind == LensKind::plain        ? camera_rays<LensKind::plain>
+         : kind == LensKind::rotational ? camera_rays<LensKind::rotational>
+                                        : camera_rays<LensKind::any>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(
+            view, rays.data(), passed.data());
+        passed.download(&ray_count, stream);
+        stream.wait("running a benchmark");
+    };
     shoot();
     rates.camera_rays = measure();
     for (const bool uniform : {false, true}) {

@@ -26,7 +26,8 @@ struct HitRates {
     double uniform_rays;  ///< closest hits per second of rays scattered there uniformly over the hemisphere
 };
 
-/// Measures closest hits in a scene: one camera ray for each pixel, and one bounce at its hit. Throws as
+/// Measures closest hits in a scene: one camera ray for each pixel, unless the lens stops it, and
+/// one bounce at its hit. Throws as
 /// lens_ray_rates, and for an invalid scene.
 HitRates hit_rates(int ordinal, const Assembly& scene, const Camera& camera, PupilTracer tracer);
 

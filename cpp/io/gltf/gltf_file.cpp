@@ -94,7 +94,7 @@ private:
         const auto skin = document_.find("skins", json_of(node)["skin"], where);
         if (!skin) return;
         std::vector<FileJoint> joints = skins_.joints(*skin);
-        if (shape.moves() || skins_.move(joints, node)) {
+        if (shape.moves() || skins_.any_moves(joints, node)) {
             shape.moving_joints = joints.size();
             deformation.joints = std::move(joints);
         } else {

@@ -276,14 +276,6 @@ Vec3d vector_of(const Json& numbers, Vec3d defaults) {
     return {numbers[std::size_t{0}].number(defaults.x), numbers[1].number(defaults.y), numbers[2].number(defaults.z)};
 }
 
-/// Returns a 4 x 4 matrix, stored by columns, as an affine map.
-Affine<double> matrix_of(const Json& m) {
-    const auto column = [&](std::size_t c) {
-        return Vec3d{m[4 * c].number(0), m[4 * c + 1].number(0), m[4 * c + 2].number(0)};
-    };
-    return {column(0), column(1), column(2), column(3)};
-}
-
 }  // namespace
 
 NodeMotion static_motion(const Json& node) {
@@ -298,7 +290,8 @@ NodeMotion static_motion(const Json& node) {
 }
 
 Affine<double> transform_of(const Json& node) {
-    if (node["matrix"].size() == 16) return matrix_of(node["matrix"]);
+    const Json& matrix = node["matrix"];
+    if (matrix.size() == 16) return affine_of_columns([&](std::size_t i) { return matrix[i].number(0); });
     return static_motion(node).parent_from_node(0);
 }
 

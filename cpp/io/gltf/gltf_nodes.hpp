@@ -11,6 +11,13 @@
 
 namespace realcam::io {
 
+/// Returns a 4 x 4 matrix, stored by columns, as an affine map. `number(i)`: its element i.
+template <class Number>
+Affine<double> affine_of_columns(const Number& number) {
+    const auto column = [&](std::size_t c) { return Vec3d{number(4 * c), number(4 * c + 1), number(4 * c + 2)}; };
+    return {column(0), column(1), column(2), column(3)};
+}
+
 /// Returns the transform of a glTF node to its parent: from its matrix, or from translation, rotation and scale.
 Affine<double> transform_of(const Json& node);
 

@@ -10,12 +10,6 @@
 namespace realcam::io {
 namespace {
 
-/// Returns a 4 x 4 matrix, stored by columns, as an affine map.
-Affine<double> affine_of(const float* m) {
-    const auto column = [&](int c) { return Vec3d{double(m[4 * c]), double(m[4 * c + 1]), double(m[4 * c + 2])}; };
-    return {column(0), column(1), column(2), column(3)};
-}
-
 Affine<double> affine_of(const InverseAffine<double>& inverse) {
     return {inverse.x, inverse.y, inverse.z, inverse.direction(-inverse.origin)};
 }
@@ -54,12 +48,14 @@ std::vector<FileJoint> GltfSkins::joints(std::size_t index) const {
         const std::optional<std::size_t> joint = document_.find("nodes", skin["joints"][j], label);
         if (!joint || node_index_[*joint] == kNoParent) document_.fail(label + ": a joint is not a node of the scene");
         joints.push_back(
-            {node_index_[*joint], inverse_binds.empty() ? Affine<double>() : affine_of(&inverse_binds[16 * j])});
+            {node_index_[*joint], inverse_binds.empty() ? Affine<double>() : affine_of_columns([&](std::size_t i) {
+                 return double(inverse_binds[16 * j + i]);
+             })});
     }
     return joints;
 }
 
-bool GltfSkins::move(const std::vector<FileJoint>& joints, std::uint32_t node) const {
+bool GltfSkins::any_moves(const std::vector<FileJoint>& joints, std::uint32_t node) const {
     return std::any_of(joints.begin(), joints.end(),
                        [&](const FileJoint& joint) { return moved_by_[joint.node] != moved_by_[node]; });
 }

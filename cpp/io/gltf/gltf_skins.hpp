@@ -14,15 +14,15 @@ using JointMaps = std::vector<Affine<double>>;
 /// Skins of a file.
 class GltfSkins {
 public:
-    /// `file_indices`: index in the file of each of scene.nodes, or kNoGltfNode. All arguments but `scene` and
-    /// `file_indices` must outlive the object.
+    /// `file_indices`: index in the file of each of scene.nodes, or kNoGltfNode. `document`, `accessors`
+    /// and `checkpoint` must outlive the object.
     GltfSkins(const GltfDocument& document, GltfAccessors& accessors, const FileScene& scene,
               const std::vector<std::size_t>& file_indices, Checkpoint& checkpoint);
 
     /// Returns the joints of a skin. `skin`: index in the file. Throws SceneFileError.
     std::vector<FileJoint> joints(std::size_t skin) const;
     /// True if any joint moves in the frame of a node. `node`: index in scene.nodes.
-    bool move(const std::vector<FileJoint>& joints, std::uint32_t node) const;
+    bool any_moves(const std::vector<FileJoint>& joints, std::uint32_t node) const;
     /// Returns the joint maps of joints that do not move in the frame of a node; std::nullopt if the transform of the
     /// node has no inverse. `node`: index in scene.nodes.
     std::optional<JointMaps> joint_maps(const std::vector<FileJoint>& joints, std::uint32_t node) const;
@@ -32,7 +32,7 @@ private:
     GltfAccessors& accessors_;
     Checkpoint& checkpoint_;
     std::vector<Affine<double>> scene_from_node_;  ///< transforms of scene.nodes, without motion
-    /// Index of the nearest moving node among each of scene.nodes and its ancestors; kNoParent if there is none.
+    /// For each of scene.nodes, the nearest moving node among itself and its ancestors; kNoParent if there is none.
     std::vector<std::uint32_t> moved_by_;
     std::vector<std::uint32_t> node_index_;  ///< index in scene.nodes of each node of the file
 };

@@ -24,8 +24,8 @@ CoatingMaterial read_metal(const TomlTable& table) {
     if (!node->is_string()) return read_complex_index(table, "metal");
     const std::string name = table.text("metal");
     if (auto metal = named_metal(name)) return *metal;
-    table.fail("unknown metal " + in_quotes(name) + did_you_mean(name, metal_names()) +
-                   "; expected \"aluminium\", \"silver\", [n, k] or [[wavelength in nm, n, k], ...]",
+    table.fail("unknown metal " + in_quotes(name) + did_you_mean(name, metal_names()) + "; expected " +
+                   quoted_list(metal_names()) + ", [n, k] or [[wavelength in nm, n, k], ...]",
                node);
 }
 
@@ -89,20 +89,20 @@ std::vector<CoatingLayer> read_layers(const TomlTable& table, const std::optiona
 /// Reads a table [coating.NAME].
 Coating read_coating(const TomlTable& table, const std::string& name, const std::optional<TomlTable>& glasses) {
     table.allow({"layers", "design_wavelength_nm", "metal", "metal_label", "reflectance", "label"});
-    const bool layers = table.find("layers") != nullptr, metal = table.find("metal") != nullptr;
+    const bool has_layers = table.find("layers") != nullptr, has_metal = table.find("metal") != nullptr;
     const auto reflectance = table.number("reflectance");
-    if (reflectance ? layers || metal : !(layers || metal))
+    if (reflectance ? has_layers || has_metal : !(has_layers || has_metal))
         table.fail(
             "a coating needs \"layers\", or a mirror's \"metal\" with or without \"layers\", or a mirror's "
             "\"reflectance\"");
-    if (const toml::node* node = table.find("design_wavelength_nm"); node && !layers)
+    if (const toml::node* node = table.find("design_wavelength_nm"); node && !has_layers)
         table.fail("\"design_wavelength_nm\" is for layers, and there are none", node);
     Coating coating = reflectance ? stated_reflectance(*reflectance, name)
-                      : metal     ? metal_mirror(read_metal(table), read_layers(table, glasses), name)
+                      : has_metal ? metal_mirror(read_metal(table), read_layers(table, glasses), name)
                                   : layered_coating(read_layers(table, glasses), name);
     if (table.find("label")) coating.name = table.line("label");
     if (const toml::node* node = table.find("metal_label")) {
-        if (!metal) table.fail("\"metal_label\" is for a \"metal\", and there is none", node);
+        if (!has_metal) table.fail("\"metal_label\" is for a \"metal\", and there is none", node);
         coating.metal.label = table.line("metal_label");
     }
     try {
@@ -142,8 +142,7 @@ Coating LensCoatings::named(const TomlTable& table, std::string_view key) const 
     std::vector<std::string> all = named_coatings();
     for (const auto& [own, coating] : file_coatings_) all.push_back(own);
     table.fail("unknown coating " + in_quotes(name) + did_you_mean(name, all) +
-                   "; expected the name of a table [coating.NAME], "
-                   "\"bare\", \"quarter_wave\", \"aluminium\", \"silver\" or \"unknown\"",
+                   "; expected the name of a table [coating.NAME], or one of " + quoted_list(named_coatings()),
                table.find(key));
 }
 

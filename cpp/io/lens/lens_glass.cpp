@@ -26,12 +26,6 @@ std::string maker_of_catalogue(const std::string& catalogue) {
     return {};
 }
 
-std::string quoted_list(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + in_quotes(name);
-    return text;
-}
-
 /// True if two glasses have the same indices, to the digits of the makers' tables.
 bool same_indices(const Glass& a, const Glass& b) {
     for (double nm = 400; nm <= 700; nm += 25)

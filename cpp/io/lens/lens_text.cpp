@@ -45,6 +45,12 @@ std::string from_latin1(std::string_view bytes) {
 
 }  // namespace
 
+std::string quoted_list(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + in_quotes(name);
+    return text;
+}
+
 std::string decoded_lens_text(std::string_view bytes, const std::string& file) {
     using namespace std::string_view_literals;
     std::string text;

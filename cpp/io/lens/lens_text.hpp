@@ -33,6 +33,9 @@ inline constexpr std::size_t kMaxFileIndices = 10000;
 /// Latin-1. Throws LensFileError if UTF-16 is invalid, or if the text has a null character.
 std::string decoded_lens_text(std::string_view bytes, const std::string& file);
 
+/// Returns names in quotation marks, with commas between them.
+std::string quoted_list(const std::vector<std::string>& names);
+
 /// Word of a line. A text in quotes is one word, without the quotes.
 struct LensWord {
     std::string_view text;

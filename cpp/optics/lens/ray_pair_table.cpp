@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "../../error.hpp"
 
@@ -22,8 +23,8 @@ bool are_finite(const std::vector<float>& numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); });
 }
 
-/// Points of the plane of the last vertex between which light from a film point on the x axis passes, on the x axis
-/// too, mm. Both are 0 if no light passes.
+/// Interval on the x axis of the plane of the last vertex through which light from a film point on the x axis passes,
+/// mm. Both ends are 0 if no light passes.
 struct LightInterval {
     double low = 0, high = 0;
 
@@ -109,44 +110,52 @@ void validate(const RayPairTable& table) {
         throw InputError(
             "the focus distance of the ray pairs must be larger than that from the front vertex to the film");
     if (table.degree < 0 || table.degree > RayPairTable::kMaxDegree)
-        throw InputError("the degree of the ray pairs' polynomials must lie between 0 and 8");
+        throw InputError("the degree of the ray pairs' polynomials must lie between 0 and " +
+                         std::to_string(RayPairTable::kMaxDegree));
     const std::size_t terms = monomial_count(table.degree);
     if (table.coefficients.size() != 2 * LensPolynomialView::kVectors * terms ||
         (!table.heights.empty() && table.heights.size() != 2 * terms))
         throw InputError("the number of the ray pairs' coefficients is not that of their degree");
     if (table.discs.empty() || table.disc_count() > RayPairTable::kMaxDiscs ||
         table.discs.size() % (2 * LensPolynomialView::kDiscTerms) != 0)
-        throw InputError("the ray pairs must have 1 to 16 discs of 8 coefficients");
+        throw InputError("the ray pairs must have 1 to " + std::to_string(RayPairTable::kMaxDiscs) + " discs of " +
+                         std::to_string(2 * LensPolynomialView::kDiscTerms) + " coefficients");
     if (!are_finite(table.coefficients) || !are_finite(table.heights) || !are_finite(table.discs))
         throw InputError("a coefficient of the ray pairs is not a finite number");
     paraxial_lens(table);
 }
 
 LensSystem paraxial_lens(const RayPairTable& table) {
-    const double L = table.length, F = table.film_distance;
-    // Terms of x and p, without monomials, of the position and the slope at z = 0 in front of the lens, per mm.
-    const auto c = [&](int i) { return static_cast<double>(table.coefficients[static_cast<std::size_t>(i)]); };
+    const double length = table.length, film_distance = table.film_distance;
+    // Linear terms in the x of the film point (0) and of the point of the last vertex plane (1), of the x of the ray's
+    // position in front of the lens, and, from 2 on, of its direction.
+    const auto coefficient = [&](int i) {
+        return static_cast<double>(table.coefficients[static_cast<std::size_t>(i)]);
+    };
     const bool has_heights = !table.heights.empty();
     const double z = has_heights ? static_cast<double>(table.heights[0]) : table.plane;
     const double forward = has_heights ? -static_cast<double>(table.heights[1]) : 1;
     const double scales[] = {1 / table.film_radius, 1 / table.last_radius};
     double height[2], slope[2];  // slopes dx/dz, with z growing towards the film
     for (int i = 0; i < 2; ++i) {
-        slope[i] = -c(2 + i) / forward * scales[i];
-        height[i] = c(i) * scales[i] - z * slope[i];
+        slope[i] = -coefficient(2 + i) / forward * scales[i];
+        height[i] = coefficient(i) * scales[i] - z * slope[i];
     }
-    // Inverse of the matrix from the front vertex to the last one, by film height = last height + F slope.
-    const double a = height[0] + height[1], b = height[0] * F, g = slope[0] + slope[1], d = slope[0] * F;
-    const double determinant = a * d - b * g;
+    // Matrix [a b; c d] from height and slope at the last vertex to those at the front one: film height = last height +
+    // film_distance * slope. Its inverse [A B; C D] is the system matrix of the lens.
+    const double a = height[0] + height[1], b = height[0] * film_distance, c = slope[0] + slope[1],
+                 d = slope[0] * film_distance;
+    const double determinant = a * d - b * c;
     const double A = d / determinant, B = -b / determinant, D = a / determinant;
     const double chief = chief_slope(table), chief_height = height[0] + height[1] * chief,
                  pupil = -chief_height / (slope[0] + slope[1] * chief);
     // The heights of the chief ray at both vertices have opposite signs; the stop divides the length in their ratio.
-    const double to_stop = L / (B / pupil + 1 - A), behind = L - to_stop;
-    const double middle = (L - B) / (to_stop * behind), first = (1 - behind * middle - A) / B,
+    const double to_stop = length / (B / pupil + 1 - A), behind = length - to_stop;
+    // Powers of thin elements at the front vertex, the stop and the last vertex that have this system matrix.
+    const double middle = (length - B) / (to_stop * behind), first = (1 - behind * middle - A) / B,
                  last = (1 - to_stop * middle - D) / B;
     const double rim = meridional_light(table, 0).high;
-    const double stop_radius = std::fabs(rim - behind * (last * rim - rim / F));
+    const double stop_radius = std::fabs(rim - behind * (last * rim - rim / film_distance));
     const bool is_lens = std::fabs(determinant - 1) < 0.02 && to_stop > 0 && behind > 0 && stop_radius > 0 &&
                          std::isfinite(first) && std::isfinite(middle) && std::isfinite(last) && std::isfinite(rim);
     if (!is_lens)
@@ -158,7 +167,7 @@ LensSystem paraxial_lens(const RayPairTable& table) {
     lens.wavelength_nm = table.wavelength_nm;
     lens.film_width = table.film_width;
     lens.film_height = table.film_height;
-    lens.film_distance = F;
+    lens.film_distance = film_distance;
     lens.stop_semi_diameter = stop_radius;
     lens.allow_overlap = true;
     lens.focus_distance = table.focus_distance;

@@ -14,12 +14,12 @@ namespace {
 constexpr double kHalfWavelength_mm = 0.5e-6 * kFringeLine_nm;
 
 /// Applies an error of the radius of curvature.
-void change_curvature(Surface& surface, ErrorKind kind, double size) {
+void change_curvature(Surface& surface, PerturbationKind kind, double size) {
     const double nominal = surface.curvature, rim = surface.clear_semi_diameter;
     double curvature = nominal;
-    if (kind == ErrorKind::radius)
+    if (kind == PerturbationKind::radius)
         curvature = nominal / (1 + size * nominal);
-    else if (kind == ErrorKind::radius_percent)
+    else if (kind == PerturbationKind::radius_percent)
         curvature = nominal / (1 + 0.01 * size);
     else
         curvature = nominal + 2 * size * kHalfWavelength_mm / (rim * rim);
@@ -29,9 +29,9 @@ void change_curvature(Surface& surface, ErrorKind kind, double size) {
 
 /// Adds astigmatism: a sag proportional to x^2 - y^2, or to 2 x y. Its extremes lie at the rim, with opposite signs on
 /// two perpendicular diameters.
-void add_irregularity(Surface& surface, ErrorKind kind, double fringes) {
+void add_irregularity(Surface& surface, PerturbationKind kind, double fringes) {
     const double rim = surface.clear_semi_diameter, amplitude = 0.5 * fringes * kHalfWavelength_mm / (rim * rim);
-    if (kind == ErrorKind::irregularity_45) {
+    if (kind == PerturbationKind::irregularity_45) {
         surface.form.xy.push_back({1, 1, 2 * amplitude});
         return;
     }
@@ -48,26 +48,26 @@ void add_thickness(LensSystem& lens, int index, double amount) {
 }
 
 /// Adds a tilt or decentre to a placement.
-void add_to(SurfacePlacement& placement, ErrorKind kind, double size) {
+void add_to(SurfacePlacement& placement, PerturbationKind kind, double size) {
     switch (kind) {
-        case ErrorKind::surface_tilt_x:
-        case ErrorKind::element_tilt_x: placement.tilt_deg.x += size; break;
-        case ErrorKind::surface_tilt_y:
-        case ErrorKind::element_tilt_y: placement.tilt_deg.y += size; break;
-        case ErrorKind::surface_decentre_x:
-        case ErrorKind::element_decentre_x: placement.decentre.x += size; break;
+        case PerturbationKind::surface_tilt_x:
+        case PerturbationKind::element_tilt_x: placement.tilt_deg.x += size; break;
+        case PerturbationKind::surface_tilt_y:
+        case PerturbationKind::element_tilt_y: placement.tilt_deg.y += size; break;
+        case PerturbationKind::surface_decentre_x:
+        case PerturbationKind::element_decentre_x: placement.decentre.x += size; break;
         default: placement.decentre.y += size;
     }
 }
 
 /// True for tilts and decentres of a single surface.
-bool moves_surface(ErrorKind kind) {
-    return kind >= ErrorKind::surface_tilt_x && kind <= ErrorKind::surface_decentre_y;
+bool moves_surface(PerturbationKind kind) {
+    return kind >= PerturbationKind::surface_tilt_x && kind <= PerturbationKind::surface_decentre_y;
 }
 
 /// True for tilts and decentres of an element.
-bool moves_element(ErrorKind kind) {
-    return kind >= ErrorKind::element_tilt_x && kind <= ErrorKind::element_decentre_y;
+bool moves_element(PerturbationKind kind) {
+    return kind >= PerturbationKind::element_tilt_x && kind <= PerturbationKind::element_decentre_y;
 }
 
 }  // namespace
@@ -76,12 +76,13 @@ void move_rigidly(LensSystem& lens, int first, int last, const Affine<double>& m
     if (!move_each_alone(lens, first, last, motion)) move_element(lens, first, last, motion);
 }
 
-LensSystem with_errors(const LensSystem& lens, const std::vector<LensError>& errors, const double* sizes) {
+LensSystem perturbed(const LensSystem& lens, const std::vector<Perturbation>& perturbations,
+                     std::span<const double> sizes) {
     LensSystem result = lens;
     std::map<int, std::pair<double, double>> melts;  // surface -> errors of index and Abbe number
     std::map<std::pair<int, int>, SurfacePlacement> surfaces, elements;
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-        const auto [kind, first, last] = errors[i];
+    for (std::size_t i = 0; i < perturbations.size(); ++i) {
+        const auto [kind, first, last] = perturbations[i];
         check_surface_exists(lens, first);
         check_surface_exists(lens, last);
         const double size = sizes[i];
@@ -91,13 +92,13 @@ LensSystem with_errors(const LensSystem& lens, const std::vector<LensError>& err
             add_to(surfaces[{first, first}], kind, size);
         else if (moves_element(kind))
             add_to(elements[{first, last}], kind, size);
-        else if (kind == ErrorKind::thickness)
+        else if (kind == PerturbationKind::thickness)
             add_thickness(result, first, size);
-        else if (kind == ErrorKind::index)
+        else if (kind == PerturbationKind::index)
             melts[first].first += size;
-        else if (kind == ErrorKind::abbe_percent)
+        else if (kind == PerturbationKind::abbe_percent)
             melts[first].second += 0.01 * size;
-        else if (kind == ErrorKind::irregularity_0 || kind == ErrorKind::irregularity_45)
+        else if (kind == PerturbationKind::irregularity_0 || kind == PerturbationKind::irregularity_45)
             add_irregularity(surface, kind, size);
         else
             change_curvature(surface, kind, size);

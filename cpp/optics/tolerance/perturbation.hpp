@@ -1,10 +1,11 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "../prescription/glass.hpp"
 #include "../prescription/lens_system.hpp"
 
-// Manufacturing errors (tolerance operands), and their application to a lens.
+// Perturbations of a lens by manufacturing errors (tolerance operands).
 
 namespace REALCAM_NAMESPACE {
 
@@ -14,8 +15,8 @@ namespace REALCAM_NAMESPACE {
 /// of the glass is not known.
 Glass with_melt_error(const Glass& glass, double index_change, double abbe_fraction);
 
-/// Kind of manufacturing error.
-enum class ErrorKind {
+/// Kind of manufacturing error, as of a tolerance operand.
+enum class PerturbationKind {
     radius,  ///< radius of curvature, mm
     radius_percent,  ///< radius of curvature, percent
     radius_fringes,  ///< sag at the rim, in half wavelengths (kFringeLine_nm)
@@ -34,24 +35,25 @@ enum class ErrorKind {
     irregularity_45,  ///< astigmatism like irregularity_0, with the largest sag along x = y
 };
 
-/// Manufacturing error of a surface or element; its size is given separately.
-struct LensError {
-    ErrorKind kind;
+/// Perturbation of a surface or element; its size is stated separately.
+struct Perturbation {
+    PerturbationKind kind;
     int first;  ///< index of the surface, from 0
     int last;  ///< index of the last surface of an element; otherwise equal to `first`
 
-    bool operator==(const LensError&) const = default;
+    bool operator==(const Perturbation&) const = default;
 };
 
 /// Wavelength of the mercury e line: the unit of fringes in ISO 10110-5 is half of it.
 inline constexpr double kFringeLine_nm = 546.07;
 
-/// Returns the lens with errors. `sizes`: size of each error, in the unit of its kind; errors of size 0 change nothing.
+/// Returns the perturbed lens. `sizes`: size of each perturbation, in the unit of its kind; size 0 changes nothing.
 /// Tilts and decentres do not move the surfaces behind. Errors of surfaces are applied before those of the elements
 /// that contain them. Only the existence of the surfaces is checked, so that thousands of copies take little time; for
 /// further checks see lens_checks.hpp. Throws InputError if a surface does not exist, or if an error cannot be applied
 /// to it.
-LensSystem with_errors(const LensSystem& lens, const std::vector<LensError>& errors, const double* sizes);
+LensSystem perturbed(const LensSystem& lens, const std::vector<Perturbation>& perturbations,
+                     std::span<const double> sizes);
 
 /// Moves surfaces `first` to `last` together, as one rigid body. Each surface gets a placement of its own
 /// (move_each_alone), so that it can be moved again. If the axis turns at one of them, as at a fold mirror, this is not

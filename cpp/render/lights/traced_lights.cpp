@@ -18,7 +18,7 @@ namespace {
 /// Desired number of samples of a light, for each pixel that its light covers and for each sample of that pixel.
 constexpr double kSamplesPerPixel = 6;
 constexpr std::int32_t kMinPixelSamples = 2, kMaxPixelSamples = 64;  ///< limits for pixel_samples_
-/// Largest n of a sampling probability 2^-n. The table of turns has up to 2^n entries.
+/// Largest n of a sampling probability 2^-n. The table from sample indices to lights has up to 2^n entries.
 constexpr int kMaxHalvings = 12;
 
 /// Returns for each weight the exponent n of a sampling probability 2^-n, so that the probabilities approximate the
@@ -71,7 +71,8 @@ TracedLights::TracedLights(const SceneView& scene, const CameraView& camera, con
     std::vector<std::size_t> visible;  // indices of the groups whose light reaches the film
     for (std::size_t k = 0; k < groups.size(); ++k)
         if (found[k]) visible.push_back(k);
-    // If there are more lights than the table of turns can hold, those that cover the most pixels are traced.
+    // If there are more lights than the table from sample indices to lights can hold, those that cover the most pixels
+    // are traced.
     std::stable_sort(visible.begin(), visible.end(),
                      [&](std::size_t a, std::size_t b) { return found[a]->pixels > found[b]->pixels; });
     visible.resize(std::min<std::size_t>(visible.size(), std::size_t{1} << kMaxHalvings));

@@ -31,7 +31,7 @@ void validate(const RenderSettings& settings) {
     validate_spp(settings.spp);
     if (settings.noise) validate(*settings.noise);
     if (settings.max_bounces && (*settings.max_bounces < 0 || *settings.max_bounces > kMaxBounces))
-        throw InputError("max_bounces must be \"auto\", or lie between 0 and 64");
+        throw InputError("max_bounces must be \"auto\", or lie between 0 and " + std::to_string(kMaxBounces));
     if (!(settings.clamp >= 0)) throw InputError("clamp_cd_m2 must be 0 (none) or a positive radiance in cd/m^2");
     if (settings.threads < 0 || settings.threads > kMaxThreads)
         throw InputError("threads must be 0 (all) or a number up to " + std::to_string(kMaxThreads));

@@ -14,6 +14,7 @@ from .._core import Camera, InputError, Lens
 from . import maps, rectification, resampling
 from .arrays import Array, Integers, picture_size, rows_of
 from .camera import GeometryError, Vignetting, calibrated_camera, geometry_error
+from .formats.format import Options
 from .load import load, load_all
 from .models import opencv_models
 from .models.central import shift
@@ -51,7 +52,7 @@ class Calibration(StatedCamera):
         that do not state it. Raises CalibrationFileError, InputError.
         """
         K = None if camera_matrix is None else _camera_matrix(camera_matrix, "camera_matrix")
-        return _calibration(load(path, camera, format, size=size, crop_factor=crop_factor, camera_matrix=K))
+        return _calibration(load(path, camera, format, _options(size, crop_factor, K)))
 
     @staticmethod
     def load_all(
@@ -62,7 +63,7 @@ class Calibration(StatedCamera):
         crop_factor: float | None = None,
     ) -> dict[str, Calibration]:
         """Loads all cameras of a file, by their names and in its order; arguments and errors as for load."""
-        stated = load_all(path, format, size=size, crop_factor=crop_factor)
+        stated = load_all(path, format, _options(size, crop_factor, None))
         return {name: _calibration(camera) for name, camera in stated.items()}
 
     def save(self, path: str | os.PathLike[str], format: str | None = None) -> None:
@@ -240,6 +241,11 @@ class Calibration(StatedCamera):
         status[is_ok & (beyond > 0)] = PointStatus.OUTSIDE_PICTURE
         if self.camera_model.is_extrapolated:
             status[is_ok & (beyond > np.hypot(*self.size))] = PointStatus.NO_PROJECTION
+
+
+def _options(size: tuple[int, int] | None, crop_factor: float | None, camera_matrix: Array | None) -> Options:
+    """Raises InputError for an invalid size."""
+    return Options(None if size is None else picture_size(size), crop_factor, camera_matrix)
 
 
 def _calibration(stated: StatedCamera) -> Calibration:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 
 from .._core import InputError
-from .arrays import Array, picture_size
 from .errors import CalibrationFileError
 from .files.document import Document
 from .formats import FORMATS
@@ -13,32 +12,15 @@ from .formats.format import Cameras, Format, Options
 from .stated_camera import StatedCamera
 
 
-def load(
-    path: str | os.PathLike[str],
-    camera: str | None = None,
-    format: str | None = None,
-    *,
-    size: tuple[int, int] | None = None,
-    crop_factor: float | None = None,
-    camera_matrix: Array | None = None,
-) -> StatedCamera:
+def load(path: str | os.PathLike[str], camera: str | None, format: str | None, options: Options) -> StatedCamera:
     """See Calibration.load."""
-    options = Options(None if size is None else picture_size(size), crop_factor, camera_matrix)
     document = Document(path)
     cameras = _cameras(document, format, options)
     return _with_size(document, cameras[_chosen(document, list(cameras), camera)](), options)
 
 
-def load_all(
-    path: str | os.PathLike[str],
-    format: str | None = None,
-    *,
-    size: tuple[int, int] | None = None,
-    crop_factor: float | None = None,
-    camera_matrix: Array | None = None,
-) -> dict[str, StatedCamera]:
+def load_all(path: str | os.PathLike[str], format: str | None, options: Options) -> dict[str, StatedCamera]:
     """See Calibration.load_all."""
-    options = Options(None if size is None else picture_size(size), crop_factor, camera_matrix)
     document = Document(path)
     cameras = _cameras(document, format, options)
     if not cameras:

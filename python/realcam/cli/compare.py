@@ -25,7 +25,7 @@ from .grouped_options import grouped
 from .shot_options import shot_options, words_of
 from .variations import Variation, variations
 
-ShotOptions = shot_options("ShotOptions", without=("resolution", "layers"))
+ShotOptions = shot_options(without=("resolution", "layers"))
 
 
 @grouped

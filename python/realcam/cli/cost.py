@@ -14,12 +14,7 @@ from .grouped_options import grouped
 from .shot_options import load_shot, shot_options
 
 # Without samples, effects and camera models, which the command itself varies.
-ShotOptions = shot_options(
-    "ShotOptions",
-    without=("resolution", "model"),
-    panels=("Camera", "Scene"),
-    also=("seed", "max_bounces", "threads"),
-)
+ShotOptions = shot_options(("resolution", "model"), ("Camera", "Scene"), also=("seed", "max_bounces", "threads"))
 
 
 @grouped

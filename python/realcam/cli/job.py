@@ -38,7 +38,7 @@ app = typer.Typer(help="Render pictures on many machines, in a folder that all o
 
 Folder = Annotated[Path, typer.Argument(help="Folder of the job, created by `realcam job make`", metavar="FOLDER")]
 Fps = Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second of a video")]
-ShotOptions = shot_options("ShotOptions", without=("threads",))  # the number of threads is set for each process
+ShotOptions = shot_options(without=("threads",))  # the number of threads is set for each process
 
 
 def _tile(text: str, option: str) -> tuple[int, int]:

@@ -16,12 +16,12 @@ from .completions import completion_of
 
 
 def shot_options(
-    name: str, without: Collection[str] = (), panels: Collection[str] | None = None, also: Collection[str] = ()
+    without: Collection[str] = (), panels: Collection[str] | None = None, also: Collection[str] = ()
 ) -> type:
     """Returns a dataclass of options for grouped(), with one field for each shot key.
 
-    name: name of the dataclass. without: keys that the command sets itself. panels: headings of the help to whose
-    options the group is restricted; None: all. also: keys under other headings.
+    without: keys that the command sets itself. panels: headings of the help to whose options the group is restricted;
+    None: all. also: keys under other headings.
     """
     group = []
     for key in _core._shot_keys():
@@ -30,7 +30,7 @@ def shot_options(
         if panels is None or key.group in panels or key.name in also:
             declared = _option(key, help=key.help, rich_help_panel=key.group)
             group.append((key.name, Annotated[str | None, declared], None))
-    return make_dataclass(name, group, frozen=True)
+    return make_dataclass("ShotOptions", group, frozen=True)
 
 
 def ring_option(name: str) -> Any:

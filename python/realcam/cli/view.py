@@ -15,7 +15,6 @@ from .shot_options import shot_options, words_of
 
 # A shot saved by the bench contains all of these options.
 ShotOptions = shot_options(
-    "ShotOptions",
     panels=("Camera", "Scene"),
     also=("ocio", "display", "view", "environment_color_space", "texture_color_space"),
 )

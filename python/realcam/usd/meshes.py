@@ -41,7 +41,9 @@ def mesh_surface(opened: OpenStage, prim: Usd.Prim, primvars: Iterable[str]) -> 
     if scheme in ("none", "bilinear"):
         normals = _normals(opened, mesh, api, surface)
         surface = surface.with_values(normals=normals) if normals else surface
-    surface = _with_faces(opened, prim, surface, counts >= 3, "faces with fewer than three corners are left out")
+    if (counts < 3).any():
+        opened.notices.add(prim.GetPath(), "faces with fewer than three corners are left out")
+        surface = surface.kept(counts >= 3)
     if scheme in ("catmullClark", "loop"):
         surface = _subdivided(opened, mesh, surface, scheme)
     elif scheme not in ("none", "bilinear"):
@@ -122,13 +124,6 @@ def _values(
         opened.notices.add(attribute.GetPath(), f"expected {expected} values ({interpolation}); {found}; left out")
         return None
     return Values(rows.reshape(expected, -1), domain)
-
-
-def _with_faces(opened: OpenStage, prim: Usd.Prim, surface: Surface, keeps: NDArray[np.bool_], notice: str) -> Surface:
-    if keeps.all():
-        return surface
-    opened.notices.add(prim.GetPath(), notice)
-    return surface.kept(keeps)
 
 
 def _subdivided(opened: OpenStage, mesh: UsdGeom.Mesh, surface: Surface, scheme: str) -> Surface:

@@ -72,7 +72,7 @@ def _camera(entries: Entries) -> StatedCamera:
 
 
 def cameras(document: Document, options: Options) -> Cameras:
-    return sole("camera", lambda: _camera(Entries(document, document.mapping())))
+    return sole(lambda: _camera(Entries(document, document.mapping())))
 
 
 def _radtan(terms: Terms) -> dict[str, float]:

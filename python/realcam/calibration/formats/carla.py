@@ -58,6 +58,6 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
 FORMAT: Format = Format(
     "carla",
     lambda d: "image_size_x" in d.mapping() and "fov" in d.mapping(),
-    lambda document, options: sole("camera", lambda: _camera(Entries(document, document.mapping()))),
+    lambda document, options: sole(lambda: _camera(Entries(document, document.mapping()))),
     Writer(("*.json",), _values, _content, is_single=True),
 )

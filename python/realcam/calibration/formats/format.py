@@ -67,9 +67,9 @@ def stated_size(document: Document, options: Options) -> tuple[int, int]:
     return options.size
 
 
-def sole(name: str, read: Callable[[], StatedCamera]) -> Cameras:
-    """Returns the cameras of a file with one camera."""
-    return {name: read}
+def sole(read: Callable[[], StatedCamera]) -> Cameras:
+    """Returns the cameras of a file with one camera, which has no name of its own."""
+    return {"camera": read}
 
 
 def unknown_model(document: Document, where: str, model: str, known: Mapping[str, object]) -> NoReturn:

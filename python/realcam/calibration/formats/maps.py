@@ -54,7 +54,7 @@ def _model(document: Document, positions: Array, is_redistorting: bool, K: Array
 
 
 def _st_cameras(kind: _Kind, document: Document, options: Options) -> Cameras:
-    return sole("camera", lambda: _st_camera(kind, document, options))
+    return sole(lambda: _st_camera(kind, document, options))
 
 
 def _st_camera(kind: _Kind, document: Document, options: Options) -> StatedCamera:
@@ -168,6 +168,6 @@ REDISTORT: Format = _st_format(_Kind("stmap-redistort", True), ("*redistort*.exr
 REMAP: Format = Format(
     "remap",
     lambda d: d.suffix == ".npz",
-    lambda document, options: sole("camera", lambda: _remap_camera(document, options)),
+    lambda document, options: sole(lambda: _remap_camera(document, options)),
     Writer(("*.npz",), _camera_matrix, _remap_content, is_single=True),
 )

@@ -138,7 +138,7 @@ def cameras(document: Document, options: Options) -> Cameras:
                 _camera(entries.child(STEREO[1]), options), name=STEREO[1], extrinsics=_pose_of_second(entries)
             ),
         }
-    return sole("camera", lambda: _camera(entries, options))
+    return sole(lambda: _camera(entries, options))
 
 
 def _values(camera: StatedCamera) -> Mapping[str, Any]:

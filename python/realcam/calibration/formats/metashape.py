@@ -77,7 +77,7 @@ def _sensor(document: Document, sensor: ET.Element, name: str) -> StatedCamera:
 
 def cameras(document: Document, options: Options) -> Cameras:
     if document.xml.tag == "calibration":
-        return sole("camera", lambda: _exported(document))
+        return sole(lambda: _exported(document))
     found: dict[str, Callable[[], StatedCamera]] = {}
     for sensor in document.xml.iter("sensor"):
         name = sensor.get("label") or sensor.get("id") or str(len(found))

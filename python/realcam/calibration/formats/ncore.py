@@ -61,7 +61,7 @@ def _content(cameras: Sequence[Saved], path: Path) -> Mapping[Path, bytes]:
 
 
 def cameras(document: Document, options: Options) -> Cameras:
-    return sole("camera", lambda: _camera(Entries(document, document.mapping())))
+    return sole(lambda: _camera(Entries(document, document.mapping())))
 
 
 FORMAT: Format = Format(

@@ -88,7 +88,7 @@ def cameras(document: Document, options: Options) -> Cameras:
     frames = list(whole.children("frames")) if "frames" in data else []
     own = [frame for frame in frames if _has_focal_length(frame.values)]
     if _has_focal_length(data) or not own:
-        return sole("camera", lambda: _camera(whole, "", frames))
+        return sole(lambda: _camera(whole, "", frames))
     # A frame inherits what it does not state.
     return {
         frame.text("file_path"): lambda frame=frame: _camera(  # type: ignore[misc]

@@ -86,7 +86,7 @@ def _matches(document: Document) -> bool:
 
 
 def cameras(document: Document, options: Options) -> Cameras:
-    return sole("camera", lambda: _camera(document))
+    return sole(lambda: _camera(document))
 
 
 def _values(camera: StatedCamera) -> Mapping[str, Any]:

@@ -82,7 +82,7 @@ def cameras(document: Document, options: Options) -> Cameras:
             for key in STEREO
             if key in entries
         }
-    return sole("camera", lambda: _camera(entries, _key(entries, MATRICES), _key(entries, COEFFICIENTS), options))
+    return sole(lambda: _camera(entries, _key(entries, MATRICES), _key(entries, COEFFICIENTS), options))
 
 
 FORMAT: Format = Format("opencv", lambda d: any(key in _storage(d) for key in (*MATRICES, *STEREO)), cameras, WRITER)

@@ -84,7 +84,7 @@ def _matches(document: Document) -> bool:
 
 
 def cameras(document: Document, options: Options) -> Cameras:
-    return sole("camera", lambda: _camera(Entries(document, document.mapping())))
+    return sole(lambda: _camera(Entries(document, document.mapping())))
 
 
 def _values(camera: StatedCamera) -> Mapping[str, Any]:

@@ -10,7 +10,7 @@
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "optics/tolerance/film_setting.hpp"
-#include "optics/tolerance/lens_error.hpp"
+#include "optics/tolerance/perturbation.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"
 
@@ -57,13 +57,13 @@ bool same_bits(const CopyFigures& a, const CopyFigures& b) {
 /// A double Gauss and four of its copies.
 struct Copies {
     LensSystem lens = io::read_lens("double-gauss-50mm");
-    std::vector<LensError> errors = {{ErrorKind::radius_percent, 0, 0},
-                                     {ErrorKind::element_decentre_x, 0, 1},
-                                     {ErrorKind::surface_tilt_y, 4, 4},
-                                     {ErrorKind::irregularity_45, 2, 2}};
+    std::vector<Perturbation> errors = {{PerturbationKind::radius_percent, 0, 0},
+                                        {PerturbationKind::element_decentre_x, 0, 1},
+                                        {PerturbationKind::surface_tilt_y, 4, 4},
+                                        {PerturbationKind::irregularity_45, 2, 2}};
     std::vector<std::vector<double>> sizes = {{0, 0, 0, 0}, {0.1, 0.05, -0.02, 1}, {-0.2, 0, 0.03, 0}, {0, -0.1, 0, 2}};
 
-    LensSystem operator[](std::size_t i) const { return with_errors(lens, errors, sizes[i].data()); }
+    LensSystem operator[](std::size_t i) const { return perturbed(lens, errors, sizes[i]); }
 };
 
 }  // namespace
@@ -119,13 +119,13 @@ TEST_CASE("refocusing brings the film back to the focus") {
 TEST_CASE("a copy with another radius is refocused to its own focus") {
     const ToleranceEvaluator judge(perfect(), one_colour({{0, 0}}, {.refocus = true}));
     const double size = 0.5;
-    const CopyFigures found = judge(with_errors(perfect(), {{ErrorKind::radius, 1, 1}}, &size));
+    const CopyFigures found = judge(perturbed(perfect(), {{PerturbationKind::radius, 1, 1}}, {&size, 1}));
     CHECK(found.settings.film_shift == about(kIndex * size / (kIndex - 1), 1e-9));
     CHECK(found.focal_length == about(kFocus / kIndex + size / (kIndex - 1), 1e-7));
     CHECK(found.fields[0].rms_spot < 1e-7 * kIndex * size / (kIndex - 1) * kSlope);
     // The film that was set is that of a lens that can be had.
-    const LensSystem set =
-        with_settings(with_errors(perfect(), {{ErrorKind::radius, 1, 1}}, &size), found.settings, {.refocus = true});
+    const LensSystem set = with_settings(perturbed(perfect(), {{PerturbationKind::radius, 1, 1}}, {&size, 1}),
+                                         found.settings, {.refocus = true});
     CHECK(set.film_distance == about(kIndex * (kRadius + size) / (kIndex - 1), 1e-9));
 }
 
@@ -174,10 +174,10 @@ TEST_CASE("an element off the axis is found and moved back") {
     const Compensators compensators{.refocus = true, .shift = ElementShift{0, 1, false, 0.5}};
     const ToleranceEvaluator judge(
         lens, one_colour({{0, 0}, {0.1, 0.1}, {-0.1, 0.1}, {0.1, -0.1}, {-0.1, -0.1}}, compensators));
-    const std::vector<LensError> errors = {{ErrorKind::element_decentre_x, 0, 1},
-                                           {ErrorKind::element_decentre_y, 0, 1}};
+    const std::vector<Perturbation> errors = {{PerturbationKind::element_decentre_x, 0, 1},
+                                              {PerturbationKind::element_decentre_y, 0, 1}};
     const double sizes[] = {0.15, -0.08};
-    const Vec3d shift = judge(with_errors(lens, errors, sizes)).settings.element_shift;
+    const Vec3d shift = judge(perturbed(lens, errors, sizes)).settings.element_shift;
     // Steps of 0.5 / 64 at last, whose parabola finds the middle to a part of them.
     CHECK(std::fabs(shift.x + 0.15) < 0.01);
     CHECK(std::fabs(shift.y - 0.08) < 0.01);
@@ -189,12 +189,12 @@ TEST_CASE("a lens that is turned about its axis by 90 degrees has the same figur
     const ToleranceEvaluator along_x(lens, one_colour({{0.15, 0}}, {.refocus = true}));
     const ToleranceEvaluator along_y(lens, one_colour({{0, 0.15}}, {.refocus = true}));
     const double size = 0.2, back = -0.2;
-    const auto figures = [&](const ToleranceEvaluator& judge, ErrorKind kind, double by) {
-        return judge(with_errors(lens, {{kind, 2, 4}}, &by)).fields[0];
+    const auto figures = [&](const ToleranceEvaluator& judge, PerturbationKind kind, double by) {
+        return judge(perturbed(lens, {{kind, 2, 4}}, {&by, 1})).fields[0];
     };
-    const FieldFigures x = figures(along_x, ErrorKind::element_decentre_x, size);
-    const FieldFigures y = figures(along_y, ErrorKind::element_decentre_y, size);
-    const FieldFigures other = figures(along_y, ErrorKind::element_decentre_y, back);
+    const FieldFigures x = figures(along_x, PerturbationKind::element_decentre_x, size);
+    const FieldFigures y = figures(along_y, PerturbationKind::element_decentre_y, size);
+    const FieldFigures other = figures(along_y, PerturbationKind::element_decentre_y, back);
     for (std::size_t i = 0; i < 4; ++i) CHECK(x.mtf[i] == about(y.mtf[i], 1e-9));
     CHECK(x.rms_spot == about(y.rms_spot, 1e-9));
     CHECK(x.at.x == about(y.at.y, 1e-11));
