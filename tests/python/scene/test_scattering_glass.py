@@ -39,9 +39,9 @@ def test_glass_that_only_scatters_is_invisible_in_uniform_light(ior: float, devi
 
 
 def test_the_interior_attenuates_by_absorption_and_scattering(device: str) -> None:
-    """Beer-Lambert through a ball without refraction. With one bounce, at its front, no light is scattered towards the
-    camera: the light of the sky behind it. The 4 x 4 pixels of the middle look through chords of 0.99 to 1 m, and flat
-    triangles shorten them by 1%."""
+    """Beer-Lambert through a ball without refraction: with one bounce, at its front, only the sky behind the ball is
+    visible through it. The chords of the 2 x 2 pixels of the middle are 0.99 to 1 m long, and flat triangles shorten
+    them by up to 1%."""
     absorption, scattering = (0.1, 0.3, 0.5), (0.4, 0.1, 1.0)
     picture = radiance(
         milk(scattering, absorption, ior=1).with_environment(1.0), CAMERA, spp=64, max_bounces=1, device=device
@@ -51,15 +51,14 @@ def test_the_interior_attenuates_by_absorption_and_scattering(device: str) -> No
 
 
 def test_a_lamp_in_milky_glass_makes_all_of_it_glow(device: str) -> None:
-    """Energy balance: a lamp that radiates the power P into glass that only scatters, without refraction, is seen from
-    all sides with P; by symmetry, the picture of the ball from any side holds the same light as that of the lamp
-    alone, up to what the lamp itself absorbs: black, and of 1/400 of the ball's section."""
+    """Energy balance in each channel: a ball of albedo 1 without refraction radiates the power of the lamp in its
+    centre. By symmetry, the light of the ball's image equals that of the lamp alone, up to the light that returns to
+    the black lamp, which has 1/400 of the ball's cross-section, and the ball's size: its front is nearer, and (0.5 /
+    2.5)^2 is 4%."""
     lamp = sphere(0.025, 8, rc.Material(diffuse=(0, 0, 0), emission=(1e4, 1e4, 1e4)), inward=False)
     film = rc.Film(36, 24, (48, 32))
     camera = pinhole(film, position=(0, 0, 2.5), look_at=(0, 0, 0))
     settings = {"effects": (), "max_bounces": 48, "device": device}
-    # The light of the ball's front reaches the camera from nearer than that of the lamp in its middle; from far away,
-    # both are the same: (2.5 / 2.5)^2 up to the ball's size, (0.5 / 2.5)^2 = 4%.
     glow = rc.render(milk((1, 2, 3), ior=1).with_instance(lamp), camera, spp=512, **settings).pixels.sum(axis=(0, 1))
     alone = rc.render(lamp, camera, spp=512, **settings).pixels.sum(axis=(0, 1))
     np.testing.assert_allclose(glow / alone, 1, atol=0.06)
