@@ -46,7 +46,16 @@ def _call(module: str, function: str, path: str, *arguments: Any) -> Any:
             return call(path, *arguments)
     except RealcamError:
         raise
-    except (Tf.ErrorException, RuntimeError, MemoryError, TypeError, ValueError, IndexError, OverflowError) as error:
+    except (
+        Tf.ErrorException,
+        RuntimeError,
+        MemoryError,
+        TypeError,
+        ValueError,
+        IndexError,
+        OverflowError,
+        OSError,  # by a name inside of a .usdz that no file may have
+    ) as error:
         raise SceneFileError(f"{path}: {_reason(error)}") from None
 
 

@@ -271,6 +271,17 @@ def test_bad_input_is_one_line(tmp_path: Path, body: str, message: str) -> None:
     assert "\n" not in text
 
 
+def test_a_name_in_a_package_that_no_file_may_have_is_one_line(tmp_path: Path) -> None:
+    name = f"{'a' * 300}.exr"
+    (tmp_path / "sky").write_bytes(b"no PNG")
+    (tmp_path / "stage.usda").write_text(f'#usda 1.0\ndef DomeLight "D" {{ asset inputs:texture:file = @./{name}@; }}')
+    with Sdf.ZipFileWriter.CreateNew(str(tmp_path / "stage.usdz")) as package:
+        package.AddFile(str(tmp_path / "stage.usda"), "stage.usda")
+        package.AddFile(str(tmp_path / "sky"), name)
+    with pytest.raises(rc.SceneFileError, match="name too long"):
+        rc.Scene.load(tmp_path / "stage.usdz")
+
+
 def test_notices_name_what_is_left_out(tmp_path: Path) -> None:
     body = """def Cube "Box" (references = @missing.usda@) { }
 def BasisCurves "Hair" { }
