@@ -220,6 +220,7 @@ class Study:
         self.family = rc.CameraParameters(case.camera, self.parameters)
         self.of_pictures = rc.CameraParameters(case.camera, PICTURES)
         self.settings = {**case.settings, "spp": spp, "device": device}
+        self.on_cpu = {**self.settings, "device": "cpu"}
         self.weights = np.random.default_rng(1).normal(size=(PIXELS[1], PIXELS[0], 3))
         picture = self.family.render(case.scene, self.family.values, seed=1, **self.settings)
         self.luminance = picture.sum(-1)
@@ -231,7 +232,7 @@ class Study:
         self.by_pictures = self._of_seeds(
             seeds,
             lambda seed: self.of_pictures.gradient(
-                case.scene, self.of_pictures.values, seed=500 + seed, **{**self.settings, "device": "cpu"}
+                case.scene, self.of_pictures.values, seed=500 + seed, **self.on_cpu
             ).sum(-1),
         )
         both = self._of_seeds(seeds, self._difference)
@@ -249,8 +250,7 @@ class Study:
         """(P,): steps that change the picture by CHANGE. The product of two independent estimates of a derivative
         picture has no bias by noise."""
         first, second = (
-            self.family.gradient(self.case.scene, self.family.values, seed=seed, **{**self.settings, "device": "cpu"})
-            for seed in (900, 901)
+            self.family.gradient(self.case.scene, self.family.values, seed=seed, **self.on_cpu) for seed in (900, 901)
         )
         squares = (first * second).mean((1, 2, 3), dtype=float)
         noise = ((first - second) ** 2).mean((1, 2, 3), dtype=float)
