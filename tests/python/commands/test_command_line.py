@@ -179,7 +179,7 @@ def test_examples_are_command_lines(name: str, example: str) -> None:
             "the plot spot takes no --method, only --fields-deg, --wavelengths, --object",
         ),
         ("lens plot depth-of-field tessar-50mm --fields-deg 5", "takes no --fields-deg, only options of the lens"),
-        ("lens plot mtf tessar-50mm --frequencies 10,20", "of one frequency; 2 are given"),
+        ("lens plot mtf tessar-50mm --frequencies 10,20", "shows one frequency; found 2"),
         ("lens report tessar-50mm -o x.svg", r"expected \.pdf or \.html"),
         ("lens report tessar-50mm --fields-deg 1,2 -o x.pdf", "three fields; found 2"),
         ("lens report tessar-50mm --fields-deg 0,10,70 -o x.pdf", "70"),

@@ -36,7 +36,7 @@ from ..device_memory import (
         (Claimed(typestr=">f8"), 'type ">f8"; expected float64 or float32'),
         (Claimed(strides=(8, 16)), "contiguous copy"),
         (Claimed(strides=(48, 8)), "contiguous copy"),
-        (Claimed(data=(4100, False)), "address that is no multiple"),
+        (Claimed(data=(4100, False)), "address that is not a multiple"),
         (Claimed(data=None), "cannot be read: TypeError"),
         (Claimed(shape="x"), "wrong type"),
         (Claimed(mask=Claimed()), "mask"),

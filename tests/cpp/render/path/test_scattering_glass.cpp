@@ -173,7 +173,7 @@ TEST_CASE("light of a point light inside of scattering glass") {
     }
 }
 
-TEST_CASE("a lamp inside of scattering glass is found by light samples and by paths") {
+TEST_CASE("a lamp inside of scattering glass is found by light samples and by paths" * doctest::test_suite("slow")) {
     // With one bounce, only light samples find the lamp. With two, scattered paths find it, too.
     Worst worst;
     for (const float g : {0.0f, 0.9f}) {
@@ -241,7 +241,7 @@ TEST_CASE("the H function has its mean in closed form") {
               doctest::Approx(2 / albedo * (1 - std::sqrt(1 - albedo))).epsilon(1e-6));
 }
 
-TEST_CASE("glass that only scatters does not change a uniform enclosure") {
+TEST_CASE("glass that only scatters does not change a uniform enclosure" * doctest::test_suite("slow")) {
     Worst worst;
     for (const float ior : {1.0f, 1.5f})
         for (const float g : {0.0f, 0.8f})
