@@ -1,5 +1,6 @@
 #include "gltf_readers.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -7,6 +8,7 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "../../math/motion.hpp"
 #include "../text/printable.hpp"
@@ -15,59 +17,77 @@
 namespace realcam::io {
 namespace {
 
-/// Reads the file's first animation.
+/// Reads the file's animations, which play together. A property of a node follows the first animation that has a
+/// channel for it.
 class AnimationReader {
 public:
     AnimationReader(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
                     const std::vector<std::size_t>& file_indices, Checkpoint& checkpoint)
-        : scene_(scene),
-          document_(document),
-          accessors_(accessors),
-          animation_(document.root()["animations"][std::size_t{0}]),
-          label_(gltf_label("animation", 0, animation_)),
-          checkpoint_(checkpoint) {
+        : scene_(scene), document_(document), accessors_(accessors), checkpoint_(checkpoint) {
         for (std::size_t i = 0; i < file_indices.size(); ++i) node_index_[file_indices[i]] = i;
     }
 
     GltfTargetWeights read() {
-        const Json& channels = animation_["channels"];
+        const std::size_t count = document_.root()["animations"].size();
+        for (index_ = 0; index_ < count; ++index_) read_channels();
+        remove_constant_motions();
+        warn_of_left_out();
+        return std::move(target_weights_);
+    }
+
+private:
+    const Json& animation() const { return document_.root()["animations"][index_]; }
+
+    void read_channels() {
+        const Json& channels = animation()["channels"];
+        const std::string label = gltf_label("animation", index_, animation());
         std::size_t other_paths = 0, without_targets = 0,
                     with_matrix = 0;  // numbers of channels that are not supported
+        bool is_left_out = false;  // a channel, because an earlier animation has one of the same property
         for (std::size_t c = 0; c < channels.size(); ++c) {
             checkpoint_.pass();
             const Json& target = channels[c]["target"];
             const std::string& path = target["path"].text();
-            const std::string where = label_ + ": channel " + std::to_string(c);
+            const std::string where = label + ": channel " + std::to_string(c);
             const std::optional<std::size_t> node = document_.find("nodes", target["node"], where + ": its node");
             if (!node || !node_index_.contains(*node)) continue;
-            if (path == "weights") {
-                const std::size_t targets = target_count(*node);
-                if (targets == 0) {
-                    ++without_targets;
-                    continue;
-                }
-                const auto keys = keys_of(channels[c]["sampler"], "SCALAR", targets, where);
-                target_weights_[*node] = {keys, changes(keys)};
-            } else if (path != "translation" && path != "rotation" && path != "scale") {
+            const bool has_weights = path == "weights";
+            if (!has_weights && path != "translation" && path != "rotation" && path != "scale") {
                 ++other_paths;
-            } else if (!document_.root()["nodes"][*node]["matrix"].is_null()) {
+            } else if (has_weights && target_count(*node) == 0) {
+                ++without_targets;
+            } else if (!has_weights && !document_.root()["nodes"][*node]["matrix"].is_null()) {
                 ++with_matrix;
+            } else if (animation_of_.try_emplace({*node, path}, index_).first->second != index_) {
+                is_left_out = true;
+            } else if (has_weights) {
+                const auto keys = keys_of(channels[c]["sampler"], "SCALAR", target_count(*node), where);
+                target_weights_[*node] = {keys, changes(keys)};
             } else {
                 const std::size_t components = path == "rotation" ? 4 : 3;
                 set_keys(*node, path,
                          keys_of(channels[c]["sampler"], components == 4 ? "VEC4" : "VEC3", components, where));
             }
         }
-        remove_constant_motions();
+        if (is_left_out) left_out_.push_back(index_);
+        const auto warn = [&](std::size_t number, const std::string& problem) {
+            if (number > 0) scene_.warnings.push_back(label + ": " + std::to_string(number) + ' ' + problem);
+        };
         warn(other_paths, "channels animate something else than translation, rotation, scale and weights");
         warn(without_targets, "channels animate the weights of a mesh without morph targets");
         warn(with_matrix, "channels animate nodes that have a matrix, which remain static");
-        return std::move(target_weights_);
     }
 
-private:
-    void warn(std::size_t count, const std::string& problem) {
-        if (count > 0) scene_.warnings.push_back(label_ + ": " + std::to_string(count) + ' ' + problem);
+    /// Adds one warning that names the animations with channels that are not played.
+    void warn_of_left_out() {
+        if (left_out_.empty()) return;
+        constexpr std::size_t kMaxNamed = 8;
+        std::string names;
+        for (std::size_t i = 0; i < std::min(left_out_.size(), kMaxNamed); ++i)
+            names += (i == 0 ? "" : ", ") +
+                     gltf_label("animation", left_out_[i], document_.root()["animations"][left_out_[i]]);
+        if (left_out_.size() > kMaxNamed) names += " and " + std::to_string(left_out_.size() - kMaxNamed) + " more";
+        scene_.warnings.push_back(names + ": channels for properties that an earlier animation moves are not played");
     }
 
     /// Returns the number of morph targets of a node's mesh. `node`: index in the file.
@@ -115,10 +135,10 @@ private:
     /// numbers of a vector.
     std::shared_ptr<const VectorKeys> keys_of(const Json& reference, const std::string& type, std::size_t components,
                                               const std::string& where) {
-        const Json& samplers = animation_["samplers"];
+        const Json& samplers = animation()["samplers"];
         const std::size_t index = reference.index(samplers.size());
         if (index >= samplers.size()) document_.fail(where + ": its sampler does not exist");
-        const auto [known, is_new] = samplers_.try_emplace({index, components, type});
+        const auto [known, is_new] = samplers_.try_emplace({index_, index, components, type});
         if (is_new) known->second = read_sampler(samplers[index], type, components, where);
         return known->second;
     }
@@ -157,13 +177,16 @@ private:
     FileScene& scene_;
     const GltfDocument& document_;
     GltfAccessors& accessors_;
-    const Json& animation_;
-    std::string label_;
     Checkpoint& checkpoint_;
+    std::size_t index_ = 0;  ///< the animation that is read
     std::map<std::size_t, std::size_t> node_index_;  ///< index in the scene of each node of the file
     GltfTargetWeights target_weights_;
-    /// Keys that have been read, by index of the sampler, number of components, and type of its output.
-    std::map<std::tuple<std::size_t, std::size_t, std::string>, std::shared_ptr<const VectorKeys>> samplers_;
+    /// Index of the first animation with a channel for a property, by index of the node in the file, and path.
+    std::map<std::pair<std::size_t, std::string>, std::size_t> animation_of_;
+    std::vector<std::size_t> left_out_;  ///< indices of animations with channels that are not played
+    /// Keys that have been read, by indices of animation and sampler, number of components, and type of its output.
+    std::map<std::tuple<std::size_t, std::size_t, std::size_t, std::string>, std::shared_ptr<const VectorKeys>>
+        samplers_;
     std::map<const VectorKeys*, bool> changes_;  ///< results of changes()
 };
 
@@ -171,9 +194,6 @@ private:
 
 GltfTargetWeights read_gltf_animations(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
                                        const std::vector<std::size_t>& file_indices, Checkpoint& checkpoint) {
-    const std::size_t count = document.root()["animations"].size();
-    if (count == 0) return {};
-    if (count > 1) scene.warnings.push_back("of " + std::to_string(count) + " animations only the first is played");
     return AnimationReader(scene, document, accessors, file_indices, checkpoint).read();
 }
 

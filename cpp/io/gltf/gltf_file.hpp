@@ -6,8 +6,8 @@
 
 namespace realcam::io {
 
-/// Reads a glTF 2.0 file (.gltf or .glb). Nodes, skins and morph targets are animated by the file's first animation;
-/// skins and morph targets that it does not move are applied. `scene_name`: name or index of the scene; empty: the
+/// Reads a glTF 2.0 file (.gltf or .glb). Nodes, skins and morph targets are animated by the file's animations;
+/// skins and morph targets that they do not move are applied. `scene_name`: name or index of the scene; empty: the
 /// file's own. Throws FileError, and SceneFileError that names the element.
 FileScene read_gltf(const std::string& path, const std::string& scene_name, Checkpoint& checkpoint);
 

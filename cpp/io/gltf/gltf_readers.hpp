@@ -21,9 +21,9 @@ struct GltfTargetKeys {
 /// The same by the index of the node in the file.
 using GltfTargetWeights = std::map<std::size_t, GltfTargetKeys>;
 
-/// Animates the nodes of a scene by the file's first animation, and returns the weights of their morph targets.
-/// Unsupported channels and further animations give warnings. `file_indices`: index in the file of each of scene.nodes.
-/// Throws SceneFileError.
+/// Animates the nodes of a scene by the file's animations together, and returns the weights of their morph targets. A
+/// channel for a property that an earlier animation has a channel for is left out. Such channels and unsupported ones
+/// give warnings. `file_indices`: index in the file of each of scene.nodes. Throws SceneFileError.
 GltfTargetWeights read_gltf_animations(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
                                        const std::vector<std::size_t>& file_indices, Checkpoint& checkpoint);
 

@@ -23,8 +23,9 @@ class Gltf:
         self.views: list[dict[str, Any]] = []
         self.accessors: list[dict[str, Any]] = []
         self.nodes: list[dict[str, Any]] = []
-        self.samplers: list[dict[str, Any]] = []
-        self.channels: list[dict[str, Any]] = []
+        self.animations: list[dict[str, Any]] = []
+        self.begin_animation("walk")
+        self.cameras: list[dict[str, Any]] = []
         self.triangle = self.array(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]), "VEC3")
         self.primitive: dict[str, Any] = {"attributes": {"POSITION": self.triangle}}
 
@@ -39,6 +40,11 @@ class Gltf:
     def node(self, name: str, **keys: Any) -> int:
         self.nodes.append({"name": name, "mesh": 0, **keys})
         return len(self.nodes) - 1
+
+    def begin_animation(self, name: str) -> None:
+        self.samplers: list[dict[str, Any]] = []
+        self.channels: list[dict[str, Any]] = []
+        self.animations.append({"name": name, "samplers": self.samplers, "channels": self.channels})
 
     def animate(self, node: int, path: str, times: object, values: object, interpolation: str = "LINEAR") -> None:
         kind = {"rotation": "VEC4", "weights": "SCALAR"}.get(path, "VEC3")
@@ -55,7 +61,8 @@ class Gltf:
             "accessors": self.accessors,
             "meshes": [{"primitives": [self.primitive]}],
             "nodes": self.nodes,
-            "animations": [{"name": "walk", "samplers": self.samplers, "channels": self.channels}],
+            "cameras": self.cameras,
+            "animations": self.animations,
         }
         path = folder / "animated.gltf"
         path.write_text(json.dumps(file))
@@ -158,6 +165,43 @@ def test_what_is_not_played_is_said(tmp_path: Path) -> None:
     assert 'node "box" is scaled to zero while it moves, and stays as it is at time 0' in warnings
     assert scene.motions == (None,)
     np.testing.assert_array_equal(at(scene, "box", 1), np.eye(4))
+
+
+def test_animations_of_different_objects_play_together(tmp_path: Path) -> None:
+    """One animation for each object, as Blender's exporter writes them, and one for the camera."""
+    gltf = Gltf()
+    ball, box = gltf.node("ball"), gltf.node("box", translation=[0, 0, -5])
+    gltf.cameras.append({"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}})
+    gltf.nodes.append({"name": "eye", "camera": 0, "translation": [0, 0, 9]})
+    gltf.animate(ball, "translation", [0, 1], [[0, 0, 0], [1, 0, 0]])
+    gltf.begin_animation("box rises")
+    gltf.animate(box, "translation", [0, 2], [[0, 0, -5], [0, 4, -5]])
+    gltf.begin_animation("box turns")
+    gltf.animate(box, "rotation", [0, 2], [[0, 0, 0, 1], [0, np.sin(0.5), 0, np.cos(0.5)]])
+    gltf.begin_animation("dolly")
+    gltf.animate(2, "translation", [0, 4], [[0, 0, 9], [0, 0, 5]])
+    scene = gltf.load(tmp_path)
+    assert not scene.warnings
+    np.testing.assert_allclose(at(scene, "ball", 0.5), shifted(0.5, 0, 0), atol=1e-6)
+    np.testing.assert_allclose(at(scene, "box", 1), shifted(0, 2, -5) @ about_y(0.5), atol=1e-6)
+    eye = rc.Shot.load(tmp_path / "animated.gltf", spp=1, exposure_time_s=0.01).camera
+    np.testing.assert_allclose(np.subtract(eye.pose_at(2)[0], eye.pose_at(0)[0]), [0, 0, -2], atol=1e-6)
+
+
+def test_a_property_follows_the_first_animation_that_moves_it(tmp_path: Path) -> None:
+    gltf = Gltf()
+    leg, arm = gltf.node("leg"), gltf.node("arm")
+    gltf.animate(leg, "translation", [0, 1], [[0, 0, 0], [1, 0, 0]])
+    gltf.begin_animation("run")
+    gltf.animate(leg, "translation", [0, 1], [[0, 0, 0], [0, 9, 0]])
+    gltf.begin_animation("wave")
+    gltf.animate(arm, "translation", [0, 1], [[0, 0, 0], [0, 0, 2]])
+    gltf.animate(leg, "translation", [0, 1], [[0, 0, 0], [0, 7, 0]])
+    scene = gltf.load(tmp_path)
+    np.testing.assert_allclose(at(scene, "leg", 0.5), shifted(0.5, 0, 0), atol=1e-6)
+    np.testing.assert_allclose(at(scene, "arm", 0.5), shifted(0, 0, 1), atol=1e-6)
+    (notice,) = scene.warnings
+    assert 'animation 1 "run", animation 2 "wave": channels for properties that an earlier animation moves' in notice
 
 
 def test_a_malformed_transform_is_left_out_with_a_warning(tmp_path: Path) -> None:
