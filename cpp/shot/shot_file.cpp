@@ -192,6 +192,20 @@ std::string option_of(std::string_view name) {
     return '"' + std::string(name) + '"';
 }
 
+/// Sets the visibility in the table [air] of a shot; its keys other than the extinction remain. `value`: a number, or
+/// its text on the command line. Returns false if `value` is something else, or if the shot has no such table.
+bool change_visibility(toml::table& shot, const toml::node& value) {
+    toml::table* const air = shot["air"].as_table();
+    if (!air) return false;
+    const auto set = [&](const auto& visibility_m) {
+        air->erase("extinction_per_m");
+        air->insert_or_assign("visibility_m", visibility_m);
+    };
+    if (const auto word = value.value<std::string>()) return parse_option_text(Syntax::number, *word, set);
+    if (value.is_number()) set(*value.value<double>());
+    return value.is_number();
+}
+
 /// Applies changes to a shot file's table. Changed values have no lines in messages: toml++ copies a node without its
 /// source.
 void apply_changes(toml::table& shot, const toml::table& changes) {
@@ -202,7 +216,7 @@ void apply_changes(toml::table& shot, const toml::table& changes) {
                 if (toml::table* const table = keyframe.as_table()) table->erase(key);
     };
     for (const auto& [key, value] : changes) {
-        erase_key(key.str());
+        if (key != "air" || !change_visibility(shot, value)) erase_key(key.str());
         for (const std::string_view other : replaced_by(key.str()))
             if (!changes.contains(other)) erase_key(other);
     }
@@ -217,7 +231,8 @@ void apply_changes(toml::table& shot, const toml::table& changes) {
             key = has_no_values(*key) ? keys->erase(key) : std::next(key);
         if (keys->empty()) shot.erase("key");
     }
-    for (const auto& [key, value] : changes) shot.insert_or_assign(key, value);
+    // Changed keys are absent by now, except a table [air] with its new visibility, which insert keeps.
+    for (const auto& [key, value] : changes) shot.insert(key, value);
 }
 
 /// Settings of a stage's camera that apply where the shot file does not specify them.

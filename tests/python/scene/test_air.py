@@ -145,9 +145,15 @@ def test_a_shot_file_has_air(tmp_path: Path) -> None:
         ("[air]\nvisibility_m = 50\n", {}),
         ("air = 50\n", {}),
         ("", {"air": 50}),
-        (full, {"air": 50}),
+        (full, {"air": {"visibility_m": 50}}),
     ]:
         assert np.array_equal(seen(shot(text, **changes)), by_visibility)
+    # A visibility replaces the extinction alone.
+    other_visibility = clear.with_air(50, albedo=0.9, anisotropy=-0.2, margin_m=7)
+    for text in (full, full.replace("extinction_per_m = [0.1, 0.2, 0.3]", "visibility_m = 9")):
+        assert np.array_equal(seen(shot(text, air=50)), pixels(other_visibility, camera(), "cpu", spp=4))
+    with pytest.raises(rc.InputError, match=r"^the visibility must be a positive number of metres$"):
+        shot(full, air=-1)
     for text, message in {
         "air = 0\n": "shot.toml:6: the visibility must be a positive number of metres",
         'air = "thick"\n': "shot.toml:6:",
@@ -178,11 +184,14 @@ def test_invalid_air_is_refused() -> None:
 
 
 @pytest.mark.picture_files
-def test_the_command_takes_a_visibility_and_reports_the_air(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("file", "albedo"), [("quad.obj", 1), ("shot.toml", 0.5)])
+def test_the_command_takes_a_visibility_and_reports_the_air(tmp_path: Path, file: str, albedo: float) -> None:
+    shot = 'format = 1\nscene = "quad.obj"\n[air]\nextinction_per_m = 3\nalbedo = 0.5\n'
+    (tmp_path / "shot.toml").write_text(shot)
     (tmp_path / "quad.obj").write_text("v -1 -1 -5\nv 1 -1 -5\nv 1 1 -5\nv -1 1 -5\nf 1 2 3 4\n")
     words = [
         "render",
-        "quad.obj",
+        file,
         "-o",
         "a.png",
         "--visibility",
@@ -198,7 +207,7 @@ def test_the_command_takes_a_visibility_and_reports_the_air(tmp_path: Path) -> N
     )
     air = json.loads(done.stdout)["air"]
     assert air["extinction_per_m"] == pytest.approx([0.1] * 3)
-    assert air["albedo"] == [1, 1, 1]
+    assert air["albedo"] == [albedo] * 3
 
 
 @pytest.mark.slow
