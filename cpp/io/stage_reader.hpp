@@ -14,8 +14,9 @@ namespace realcam::io {
 struct StageReader {
     /// Reads a stage as read_scene does.
     std::function<Assembly(const std::string& path, const SceneFileOptions& options)> scene;
-    /// Returns the settings of a stage's camera, as TOML with keys of shot files; paths are absolute. `camera`: its
-    /// name; empty: the first perspective camera. Without such a camera the text is empty.
+    /// Returns the settings of a stage's camera, as TOML with keys of shot files; paths are absolute. A further key,
+    /// focus_is_to_pupil = true, says that focus distances are measured to the entrance pupil of the shot's lens.
+    /// `camera`: its name; empty: the first perspective camera. Without such a camera the text is empty.
     std::function<std::string(const std::string& path, const SceneFileOptions& options, const std::string& camera)>
         camera_settings;
 };

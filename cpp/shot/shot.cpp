@@ -239,10 +239,23 @@ Camera calibrated_camera(const ShotRequest& request) {
     return camera;
 }
 
+/// Changes focus distances that are measured to the entrance pupil of the lens to those to the film.
+void measure_focus_to_film(ShotRequest& request, const LensSystem& lens) {
+    if (!request.view_focus_is_to_pupil && !request.key_focus_is_to_pupil) return;
+    const double pupil_m = pupil_to_film_m(lens);
+    const auto add_pupil = [&](std::optional<double>& focus_m) {
+        if (focus_m) *focus_m += pupil_m;
+    };
+    if (std::exchange(request.view_focus_is_to_pupil, false)) add_pupil(request.view.focus_distance_m);
+    if (std::exchange(request.key_focus_is_to_pupil, false))
+        for (CameraKey& key : request.keys) add_pupil(key.focus_m);
+}
+
 }  // namespace
 
-Camera camera_of(const ShotRequest& request) {
+Camera camera_of(ShotRequest& request) {
     Camera camera = request.calibration.file.empty() ? lens_camera(request) : calibrated_camera(request);
+    measure_focus_to_film(request, camera.lens);
     camera.model = request.model;
     camera.iso = request.iso;
     camera.shutter = request.shutter;

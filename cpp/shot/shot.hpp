@@ -79,9 +79,10 @@ void resolve_keys(ShotRequest& request);
 /// Throws InputError.
 std::shared_ptr<const View> view_of(const ShotRequest& request);
 
-/// Lens, film and dials of a request after resolve_keys, before the camera is placed. Throws InputError and
-/// LensFileError for all errors that can be found before the scene is read, which may take long.
-Camera camera_of(const ShotRequest& request);
+/// Lens, film and dials of a request after resolve_keys, before the camera is placed. Changes focus distances of the
+/// request that are measured to the lens's entrance pupil to those to its film. Throws InputError and LensFileError for
+/// all errors that can be found before the scene is read, which may take long.
+Camera camera_of(ShotRequest& request);
 
 /// Reads the scene of a request, with its additions, texture and environment. Throws InputError, SceneFileError and
 /// ImageFileError, and Cancelled if `keep_going` returns false.

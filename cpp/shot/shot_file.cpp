@@ -248,6 +248,7 @@ public:
         options.variants = shown.texts("variants");
         values_ =
             io::parse_toml(io::stage_reader(scene).camera_settings(scene, options, camera), scene, ShotTable::fail_at);
+        focus_is_to_pupil_ = values_.erase("focus_is_to_pupil") > 0;
     }
 
     /// Adds the settings that a shot file neither has nor excludes.
@@ -261,14 +262,17 @@ public:
         }
     }
 
-    /// Gives the stage's film the aspect ratio of a specified resolution; its width stays. Marks f-number and film size
-    /// as those of another lens if the stage has no lens, or the shot file another one.
+    /// Gives the stage's film the aspect ratio of a specified resolution; its width stays. Marks focus distances of the
+    /// stage that are measured to the entrance pupil, and f-number and film size as those of another lens if the stage
+    /// has no lens, or the shot file another one.
     void adapt(ShotRequest& request) const {
         const auto has = [&](const char* key) { return std::ranges::count(added_, key) > 0; };
         if (has("film_mm") && request.resolution) {
             const auto [columns, rows] = *request.resolution;
             (*request.film_mm)[1] = (*request.film_mm)[0] * rows / columns;
         }
+        request.view_focus_is_to_pupil = focus_is_to_pupil_ && has("focus_m");
+        request.key_focus_is_to_pupil = focus_is_to_pupil_ && has("key");
         if (has("lens")) return;
         request.f_number_is_of_other_lens |= has("f_number");
         request.film_is_of_other_lens |= has("film_mm");
@@ -276,6 +280,7 @@ public:
 
 private:
     toml::table values_;
+    bool focus_is_to_pupil_ = false;  // instead of to the film
     std::vector<std::string> added_;  // keys
 };
 

@@ -61,6 +61,9 @@ struct ShotRequest : PictureRequest {
     /// True if the f-number or the film size is that of the shot file or of the stage's camera, and the lens is not:
     /// an option has replaced it, or the stage has none.
     bool f_number_is_of_other_lens = false, film_is_of_other_lens = false;
+    /// True if the focus distance in `view`, or those in `keys`, are measured to the entrance pupil of the lens, as in
+    /// USD stages. camera_of changes them to distances to the film.
+    bool view_focus_is_to_pupil = false, key_focus_is_to_pupil = false;
     std::optional<int> blades;  ///< number of blades of the diaphragm; missing blade properties are those of the lens
     std::optional<double> blade_rounding, blade_rotation_deg;
     std::optional<std::array<double, 2>> film_mm;  ///< width and height

@@ -12,14 +12,12 @@
 
 namespace realcam {
 
-namespace {
-
-/// Returns the distance from the entrance pupil to the film along the axis, m. An entrance pupil at infinity is
-/// replaced by the front vertex.
 double pupil_to_film_m(const LensSystem& lens) {
     const double pupil = nominal_first_order(lens).entrance_pupil_position;
     return (lens.film_position() - (std::isfinite(pupil) ? pupil : 0.0)) / 1000;
 }
+
+namespace {
 
 /// Returns the extent of a box along a unit vector that is nearly parallel to one of its axes.
 double extent(const BoundingBox& box, Vec3d direction) {

@@ -14,6 +14,10 @@ namespace REALCAM_NAMESPACE {
 /// sunny-16 rule holds.
 void add_daylight(Scene& scene, const Pose& pose);
 
+/// Returns the distance from the entrance pupil, which set_view places at the origin of a scene's camera, to the film
+/// along the axis, m. An entrance pupil at infinity is replaced by the front vertex.
+double pupil_to_film_m(const LensSystem& lens);
+
 /// The user's specification of the camera's position and focus, in the scene frame. Missing values are chosen
 /// (set_view).
 struct ViewRequest {

@@ -23,7 +23,8 @@ def read_stage(path: str, scale: float, objects: Sequence[str], variants: Sequen
 
 
 def camera_settings(path: str, scale: float, variants: Sequence[str], camera: str) -> str:
-    """Returns the settings of a stage's camera as the text of a shot file; paths are absolute.
+    """Returns the settings of a stage's camera as the text of a shot file; paths are absolute. A further key,
+    focus_is_to_pupil = true, says that focus distances are measured to the entrance pupil of the shot's lens.
 
     camera: its name; "": the first perspective camera. Returns "" if the stage has no such camera. Raises
     SceneFileError and InputError.

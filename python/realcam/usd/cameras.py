@@ -11,7 +11,6 @@ from typing import Any
 
 from pxr import Gf, Sdf, Usd, UsdGeom
 
-from .._core import Lens, RealcamError
 from ..shot import toml_value
 from .assets import asset_of
 from .glb import Json
@@ -19,9 +18,8 @@ from .motion import MAX_KEYS
 from .stage import OpenStage, children_of, open_stage
 
 # Attributes of a camera prim by which a stage keeps its lens. The focus is in metres, from the object plane to the
-# film; USD's own focusDistance is in units of the stage, from the camera's origin, which is the entrance pupil.
+# film; USD's own focusDistance is in units of the stage, to the camera's origin, which is the entrance pupil.
 LENS, F_NUMBER, FOCUS_M = "realcam:lens", "realcam:fNumber", "realcam:focusM"
-_DEFAULT_LENS = "double-gauss-50mm"  # ShotRequest::lens of cpp/shot/shot_request.hpp
 _TOLERANCE = 1e-3  # of focus and f-number between keyframes, relative
 _FILM_MM = (1.0, 500.0)  # diagonals of films that are not taken for a mistake in the stage's units
 
@@ -85,18 +83,6 @@ def _is_film(film: tuple[float, float]) -> bool:
     return min(film) > 0 and _FILM_MM[0] <= math.hypot(*film) <= _FILM_MM[1]
 
 
-def _pupil_to_film_m(name: str) -> float:
-    """Returns the distance from the entrance pupil of a lens to its film; 0 if it cannot be read or has none."""
-    try:
-        lens = Lens.load(name)
-        pupil_mm = lens.first_order().entrance_pupil_position_mm
-        length_mm = sum(surface.thickness_mm for surface in lens.surfaces[:-1]) + lens.film_distance_mm
-    except RealcamError:  # the message comes when the shot reads the lens
-        return 0.0
-    distance_m = (length_mm - pupil_mm) / 1000
-    return distance_m if math.isfinite(distance_m) else 0.0
-
-
 def _notice_what_is_left_out(opened: OpenStage, prim: Usd.Prim) -> None:
     camera = UsdGeom.Camera(prim)
     film = film_mm(opened, prim)
@@ -129,7 +115,8 @@ class _Settings:
     metres: float
 
     def values(self) -> dict[str, Any]:
-        """Returns keys of shot files with their values."""
+        """Returns keys of shot files with their values, and focus_is_to_pupil if focus distances are those to the
+        entrance pupil."""
         camera = UsdGeom.Camera(self.prim)
         values: dict[str, Any] = {}
         self._add_lens(values)
@@ -163,20 +150,21 @@ class _Settings:
     def _add_rings(self, values: dict[str, Any]) -> None:
         """Adds focus and f-number, as keyframes if they have values over time."""
         keys: dict[float, dict[str, Any]] = {}
-        to_film_m = _pupil_to_film_m(values.get("lens", _DEFAULT_LENS))
         for key, sources in (
-            ("focus_m", ((FOCUS_M, 1.0, 0.0), ("focusDistance", self.metres, to_film_m))),
-            ("f_number", ((F_NUMBER, 1.0, 0.0), ("fStop", 1.0, 0.0))),
+            ("focus_m", ((FOCUS_M, 1.0), ("focusDistance", self.metres))),
+            ("f_number", ((F_NUMBER, 1.0), ("fStop", 1.0))),
         ):
-            for name, factor, offset in sources:
+            for name, factor in sources:
                 number = self._number(name)
                 if number <= 0:
                     continue
+                if name == "focusDistance":
+                    values["focus_is_to_pupil"] = True
                 samples = self._samples(name)
                 if len(samples) < 2:
-                    values[key] = number * factor + offset
+                    values[key] = number * factor
                 for seconds, sample in samples.items() if len(samples) >= 2 else ():
-                    keys.setdefault(seconds, {})[key] = sample * factor + offset
+                    keys.setdefault(seconds, {})[key] = sample * factor
                 break
         if keys:
             held = {"interpolation": "step"} if self._is_held else {}

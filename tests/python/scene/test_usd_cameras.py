@@ -83,6 +83,35 @@ def test_rings_over_time_are_interpolated_as_usd_does(tmp_path: Path, focus: str
         assert (focus_m - offset, number) == pytest.approx(expected, rel=2e-3)
 
 
+def test_focus_distance_is_measured_to_the_entrance_pupil_of_the_shots_lens(tmp_path: Path) -> None:
+    """focusDistance is measured from the camera's origin, the entrance pupil of whichever lens the shot has."""
+    path = tmp_path / "stage.usda"
+    stage = camera_stage(path)
+    prim = stage.GetPrimAtPath("/Main")
+    prim.GetAttribute("focusDistance").Set(4.0)
+    stage.Save()
+    (tmp_path / "zoom.toml").write_text('format = 1\nscene = "stage.usda"\nlens = "zoom-80-200mm"\nzoom = "200mm"\n')
+    zoom = rc.Lens.load("zoom-80-200mm")
+
+    def check(shot: rc.Shot, lens: rc.Lens) -> None:
+        pupil_mm = lens.first_order().entrance_pupil_position_mm
+        film_mm = sum(surface.thickness_mm for surface in lens.surfaces[:-1]) + lens.film_distance_mm
+        # Both sides are the same sum in double precision, rounded differently.
+        assert shot.camera.lens.focus_distance_m == pytest.approx(4 + (film_mm - pupil_mm) / 1000, rel=1e-9)
+
+    check(rc.Shot.load(path, spp=1), rc.Lens.load("double-gauss-50mm"))
+    check(rc.Shot.load(path, spp=1, lens="long-800mm"), rc.Lens.load("long-800mm"))
+    check(rc.Shot.load(path, spp=1, lens=rc.Lens.load("tessar-50mm")), rc.Lens.load("tessar-50mm"))
+    check(rc.Shot.load(tmp_path / "zoom.toml", spp=1), zoom.zoomed(zoom.zoom_positions[-1]))
+    assert rc.Shot.load(path, spp=1, lens="long-800mm", focus_m=7).camera.lens.focus_distance_m == pytest.approx(7)
+    prim.CreateAttribute("realcam:lens", Sdf.ValueTypeNames.String).Set("tessar-50mm")
+    prim.GetAttribute("focusDistance").Set(4.0, 0)
+    prim.GetAttribute("focusDistance").Set(6.0, 24)
+    stage.Save()
+    check(rc.Shot.load(path, spp=1), rc.Lens.load("tessar-50mm"))
+    check(rc.Shot.load(path, spp=1, lens="long-800mm"), rc.Lens.load("long-800mm"))
+
+
 def test_realcams_attributes_precede_values_over_time_of_usds_own(tmp_path: Path) -> None:
     stage = camera_stage(tmp_path / "stage.usda")
     prim = stage.GetPrimAtPath("/Main")
