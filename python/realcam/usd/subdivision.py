@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .surface import Floats, Indices, Surface, Values
+from .surface import NORMAL_DELTAS, POINT_DELTAS, Floats, Indices, Surface, Values
 
+SCHEMES = ("catmullClark", "loop")
 LEVELS = 2
 MAX_FACES = 200_000  # of a mesh after subdivision; a mesh that would have more gets fewer levels
 INFINITE = 10.0  # sharpness from which a crease or corner stays sharp at all levels
@@ -42,15 +43,19 @@ class _Edges:
     sharpness: Floats
 
 
+def refined_size(corner_count: int) -> int:
+    """Returns the number of faces, and about that of points, after the subdivision of a mesh."""
+    levels = _levels(corner_count)
+    return corner_count * 4 ** (levels - 1) if levels else corner_count
+
+
 def subdivided(surface: Surface, scheme: str, sharpness: Sharpness) -> Surface:
     """Returns a subdivided surface with smooth normals.
 
     scheme: "catmullClark", or "loop" for triangles. Primvars of points are subdivided as the points are, those of
     corners linearly.
     """
-    levels = LEVELS
-    while levels > 0 and len(surface.corners) * 4 ** (levels - 1) > MAX_FACES:
-        levels -= 1
+    levels = _levels(len(surface.corners))
     edge_points = sharpness.edges
     edge_values: Floats = np.asarray(sharpness.edge_values, np.float64)
     corner_values: Floats = np.zeros(len(surface.points))
@@ -64,7 +69,14 @@ def subdivided(surface: Surface, scheme: str, sharpness: Sharpness) -> Surface:
         surface, edge_points, edge_values, corner_values = refine(surface, edges, corner_values)
     if levels and scheme == "catmullClark":
         surface = _at_limit(surface, _edges_of(surface, edge_points, edge_values), corner_values)
-    return surface.with_values(normals=Values(_smooth_normals(surface), "point"))
+    return _with_smooth_normals(surface)
+
+
+def _levels(corner_count: int) -> int:
+    levels = LEVELS
+    while levels > 0 and corner_count * 4 ** (levels - 1) > MAX_FACES:
+        levels -= 1
+    return levels
 
 
 def _points_of_one_face(surface: Surface) -> Indices:
@@ -261,9 +273,11 @@ def _loop(surface: Surface, edges: _Edges, corner_values: Floats) -> _Refined:
 def _at_limit(surface: Surface, edges: _Edges, corner_values: Floats) -> Surface:
     """Moves the points of quads to their positions on the limit surface (Halstead, Kass and DeRose 1993).
 
-    On creases and boundaries the limit is that of a cubic B-spline curve, (a + 4 p + b) / 6.
+    On creases and boundaries the limit is that of a cubic B-spline curve, (a + 4 p + b) / 6. Displacements follow
+    the same linear rules.
     """
-    points = np.asarray(surface.points, np.float64)
+    deltas = surface.values.get(POINT_DELTAS)
+    points = np.asarray(surface.points if deltas is None else np.hstack([surface.points, deltas.rows]), np.float64)
     count = len(points)
     corners = surface.corners.reshape(-1, 4)
     opposite = _sums(corners.ravel(), points[np.roll(corners, 2, axis=1).ravel()], count)
@@ -279,7 +293,21 @@ def _at_limit(surface: Surface, edges: _Edges, corner_values: Floats) -> Surface
     limit[on_crease] = ((4 * points + along) / 6)[on_crease]
     stays = (number > 2) | (corner_values > 0) | (np.bincount(surface.corners, minlength=count) == 0)
     limit[stays] = points[stays]
-    return replace(surface, points=limit)
+    surface = replace(surface, points=limit[:, :3])
+    return surface if deltas is None else surface.with_values(**{POINT_DELTAS: Values(limit[:, 3:], "point")})
+
+
+def _with_smooth_normals(surface: Surface) -> Surface:
+    """Returns the surface with the normals of its points, and their changes if the points are displaced."""
+    normals = _smooth_normals(surface)
+    values = {"normals": Values(normals, "point")}
+    if POINT_DELTAS in surface.values:
+        rows = surface.values[POINT_DELTAS].rows
+        moved = (replace(surface, points=surface.points + rows[:, k : k + 3]) for k in range(0, rows.shape[1], 3))
+        values[NORMAL_DELTAS] = Values(
+            np.hstack([_smooth_normals(at_sample) - normals for at_sample in moved]), "point"
+        )
+    return surface.with_values(**values)
 
 
 def _smooth_normals(surface: Surface) -> NDArray[Any]:
