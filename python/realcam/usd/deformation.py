@@ -15,8 +15,8 @@ from .glb import Glb
 from .stage import OpenStage
 from .subdivision import SCHEMES, refined_size
 
-# Of a stage: the sum over meshes, and over nodes with such meshes, of samples times points. A mesh counts as if it had
-# at least as many points as samples, because the keys of its weights are a square matrix.
+# Largest number of samples times points of a stage: of its meshes together, and of all nodes with such meshes. A mesh
+# counts as if it had at least as many points as samples, because the keys of its weights are a square matrix.
 MAX_MOVING_POINTS = 10_000_000
 
 
@@ -43,35 +43,17 @@ class Deformations:
     def samples_of(self, prim: Usd.Prim) -> PointSamples | None:
         """Returns the samples of a mesh's points from the start of the stage to the first change of its topology; None
         if its points do not move. Raises SceneFileError if points are not finite."""
-        opened, mesh = self._opened, UsdGeom.Mesh(prim)
-        end = _end_of_topology(opened, mesh)
-        attribute = mesh.GetPointsAttr()
-        times = _times_from_start(opened, attribute)
-        count = len(attribute.Get(opened.time) or ())
-        size = _size_when_refined(opened, mesh, count)
+        mesh = UsdGeom.Mesh(prim)
+        count = len(mesh.GetPointsAttr().Get(self._opened.time) or ())
+        refined_count = max(_count_when_refined(self._opened, mesh, count), 1)
         room = MAX_MOVING_POINTS - self._size_read
-        limit = min(room // max(size, 1), isqrt(room))
-        samples: list[NDArray[np.float32]] = []
-        for time in times if len(times) > 1 and count > 0 else []:
-            if len(samples) == limit:
-                text = f"its points over time are read up to {len(samples)} samples, by the limit of a stage"
-                opened.notices.add(attribute.GetPath(), text)
-                break
-            points = np.array(attribute.Get(time) or (), np.float32).reshape(-1, 3)
-            if time < end and len(points) != count:
-                end = time
-            if time >= end:
-                break
-            if not np.isfinite(points).all():
-                raise opened.fail(prim, f"points at time code {time:g}: expected finite numbers")
-            samples.append(points)
-        if end < inf:
-            opened.notices.add(prim.GetPath(), f"its topology changes at time code {end:g}; its shape stays from there")
-        if all(np.array_equal(points, samples[0]) for points in samples[1:]):
+        samples = _samples(self._opened, mesh, count, min(room // refined_count, isqrt(room)))
+        points = list(samples.values())
+        if all(np.array_equal(row, points[0]) for row in points[1:]):
             return None
-        size = len(samples) * max(size, len(samples))
+        size = len(samples) * max(refined_count, len(samples))
         self._size_read += size
-        return PointSamples(times[: len(samples)], np.stack(samples), size)
+        return PointSamples(list(samples), np.stack(points), size)
 
     def add(self, mesh: int, samples: PointSamples) -> None:
         """Adds the keys of the weights of a mesh, whose target k is the displacement from sample 0 to k + 1. mesh: its
@@ -96,6 +78,30 @@ class Deformations:
         self._glb.animate(node, "weights", sampler)
 
 
+def _samples(opened: OpenStage, mesh: UsdGeom.Mesh, count: int, limit: int) -> dict[float, NDArray[np.float32]]:
+    """Returns the samples of a mesh's points by time code, (count, 3) each, up to the first change of topology. limit:
+    on their number."""
+    attribute, end = mesh.GetPointsAttr(), _end_of_topology(opened, mesh)
+    samples: dict[float, NDArray[np.float32]] = {}
+    times = _times_from_start(opened, attribute)
+    for time in times if len(times) > 1 else []:
+        points = np.array(attribute.Get(time) or (), np.float32).reshape(-1, 3)
+        if len(points) != count:
+            end = min(end, time)
+        if time >= end:
+            break
+        if len(samples) == limit:
+            text = f"its points over time are read up to {limit} samples, by the limit of a stage"
+            opened.notices.add(attribute.GetPath(), text)
+            break
+        if not np.isfinite(points).all():
+            raise opened.fail(mesh.GetPrim(), f"points at time code {time:g}: expected finite numbers")
+        samples[time] = points
+    if end < inf:
+        opened.notices.add(mesh.GetPath(), f"its topology changes at time code {end:g}; its shape stays from there")
+    return samples
+
+
 def _times_from_start(opened: OpenStage, attribute: Usd.Attribute) -> list[float]:
     """Returns the times of samples, beginning with the last one that is not after the start of the stage."""
     times = sorted(attribute.GetTimeSamples())
@@ -113,7 +119,7 @@ def _end_of_topology(opened: OpenStage, mesh: UsdGeom.Mesh) -> float:
     return end
 
 
-def _size_when_refined(opened: OpenStage, mesh: UsdGeom.Mesh, count: int) -> int:
+def _count_when_refined(opened: OpenStage, mesh: UsdGeom.Mesh, count: int) -> int:
     """Returns the number of points of a mesh with this number of points after its subdivision."""
     if str(mesh.GetSubdivisionSchemeAttr().Get(opened.time)) not in SCHEMES:
         return count

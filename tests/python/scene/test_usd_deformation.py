@@ -12,6 +12,7 @@ pytest.importorskip("pxr")
 
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 
+from .. import scenes
 from .test_usd_stages import TOLERANCE, stage_file
 
 TIMES = (1.0, 2.0, 4.5, 7.0)  # time codes of the samples
@@ -60,7 +61,7 @@ def compare(stage: Usd.Stage, scene: rc.Scene, start: float = 1.0) -> None:
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("start", [0.0, 1.0, 3.25])
 def test_points_between_samples(tmp_path: Path, seed: int, start: float) -> None:
-    """Four triangles, of which each point touches the bounds at some time."""
+    """Each point of a triangle touches the bounds at some time."""
     stage = new_stage(tmp_path / "stage.usda", start)
     triangle(stage, seed=seed)
     stage.Save()
@@ -173,6 +174,31 @@ def test_points_that_are_not_finite_are_one_line(tmp_path: Path) -> None:
 }"""
     with pytest.raises(rc.SceneFileError, match="/M: points at time code 5: expected finite numbers"):
         rc.Scene.load(stage_file(tmp_path, body))
+
+
+@pytest.mark.parametrize("scheme", ["none", "catmullClark"])
+def test_light_follows_the_shape(tmp_path: Path, scheme: str) -> None:
+    """A matte floor that tilts by 60 degrees has the luminance of the cosine, without authored normals."""
+    body = f"""def Mesh "Floor" {{
+    int[] faceVertexCounts = [4]
+    int[] faceVertexIndices = [0, 1, 2, 3]
+    uniform token subdivisionScheme = "{scheme}"
+    point3f[] points.timeSamples = {{
+        0: [(-90, 0, 90), (90, 0, 90), (90, 0, -90), (-90, 0, -90)],
+        24: [(-90, {90 * np.sin(np.pi / 3)}, 45), (90, {90 * np.sin(np.pi / 3)}, 45),
+             (90, {-90 * np.sin(np.pi / 3)}, -45), (-90, {-90 * np.sin(np.pi / 3)}, -45)]
+    }}
+}}"""
+    scene = rc.Scene.load(stage_file(tmp_path, body)).with_sun((0, -1, 0), (1, 1, 1))
+    camera = scenes.pinhole(rc.Film(0.1, 0.1, (4, 4)), position=(60, 30, 0), look_at=(0, 0, 0))
+
+    def light(time_s: float) -> float:
+        picture = rc.render(scene.at_time(time_s), camera, spp=64, effects=(), max_bounces=0)
+        return float(picture.pixels.astype(float).mean())
+
+    for u in (0.3, 1.0):
+        tilt = np.arctan2(u * np.sin(np.pi / 3), 1 - u / 2)
+        assert light(u) == pytest.approx(light(0) * np.cos(tilt), rel=1e-5)  # floats; the sun has no noise
 
 
 CUBE_FACES = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
