@@ -190,3 +190,16 @@ def _elements(values: Values, surface: Surface, triangles: Triangles, used: Indi
     if values.domain == "face":
         return np.repeat(triangles.face_rows, 3)
     return points if values.domain == "point" else np.zeros_like(points)
+
+
+def next_corners(counts: Indices) -> Indices:
+    """Returns the index of the next corner of the same face, for each corner."""
+    following = np.arange(counts.sum()) + 1
+    ends = np.cumsum(counts)
+    following[ends - 1] = ends - counts
+    return following
+
+
+def sums(index: Indices, rows: Floats, count: int) -> Floats:
+    """Returns the sums of rows, (N, C), with equal index, (count, C)."""
+    return np.stack([np.bincount(index, column, minlength=count) for column in rows.T], axis=-1)
