@@ -67,7 +67,14 @@ class Problem:
     def derivatives(self, values: np.ndarray, block: int, seed: int, spp: int = 0) -> np.ndarray:
         """(P, 1, H, W, 3)"""
         samples = spp or SPP[block][1]
-        found = self.family.gradient(self.scene, values, seed=1000 + seed, spp=samples, max_bounces=0)
+        found = self.family.gradient(
+            self.scene,
+            values,
+            seed=1000 + seed,
+            spp=samples,
+            outline_spp=samples // 4,  # derivatives by positions and the f-number come mostly from the outline
+            max_bounces=0,
+        )
         return found[:, None] @ self.electrons.T
 
     def information(self, spp: int = 256) -> np.ndarray:

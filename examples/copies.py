@@ -109,12 +109,12 @@ def sheet(study: rc.ToleranceStudy, order: np.ndarray, tiles: list[np.ndarray], 
     axes.set_axis_off()
     title = (
         f"{len(tiles)} copies of {study.lens.name} at f/{wanted.f_number:g}, {wanted.grade} grade: MTF at "
-        f"{study.frequencies_per_mm[study.main]:g}/mm, best first. Amber is below three quarters of the lens as drawn, "
-        "red below half"
+        f"{study.frequencies_per_mm[study.middle_frequency]:g}/mm, best first. Amber is below three quarters of the "
+        "lens as drawn, red below half"
     )
     axes.text(gap, head / 2, title, va="center", fontsize=6.5, parse_math=False)
-    mtf = study.figures.mtf[..., study.main].mean(2)
-    drawn = study.nominal.mtf[0, ..., study.main].mean(1)
+    mtf = study.figures.mtf[..., study.middle_frequency].mean(2)
+    drawn = study.nominal.mtf[0, ..., study.middle_frequency].mean(1)
     points = 72 / DPI * size / 12  # of a letter that is a twelfth of a tile high
     for index, (number, tile) in enumerate(zip(order, tiles, strict=True)):
         left, top = gap + index % columns * (size + gap), head + gap + index // columns * (size + gap)

@@ -32,7 +32,10 @@ GEOMETRY = """def Xform "World" (variants = { string size = "small"; }; prepend 
     {
         int[] faceVertexCounts = [4, 3]
         int[] faceVertexIndices = [0, 1, 2, 3, 1, 4, 2]
-        point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 1)]
+        point3f[] points.timeSamples = {
+            1: [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 1)],
+            9: [(0, 0, 1), (1, 0, 0), (1, 2, 0), (0, 1, 0), (2, 0, 1)],
+        }
         uniform token subdivisionScheme = "none"
         normal3f[] normals = [(0, 0, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1), (0, 1, 0)]
         texCoord2f[] primvars:st = [(0, 0), (1, 0), (1, 1)] (interpolation = "faceVarying")
@@ -45,6 +48,10 @@ GEOMETRY = """def Xform "World" (variants = { string size = "small"; }; prepend 
         int[] faceVertexCounts = [4, 4, 4]
         int[] faceVertexIndices = [0, 1, 2, 3, 4, 5, 1, 0, 1, 5, 6, 2]
         point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1)]
+        point3f[] points.timeSamples = {
+            1: [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1)],
+            24: [(0, 0, 5), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 2), (1, 0, 1), (1, 1, 1)],
+        }
         int[] creaseIndices = [0, 1, 2]
         int[] creaseLengths = [3]
         float[] creaseSharpnesses = [1.5]
@@ -176,7 +183,8 @@ def read(case: str) -> tuple[str, str]:
         file.flush()
         try:
             camera_settings(file.name, 1.0, [], "")
-            messages, outcome = rc.Scene.load(file.name).warnings, "read"
+            scene = rc.Scene.load(file.name)
+            messages, outcome = scene.at_time(0.3).warnings, "read"
         except rc.RealcamError as error:
             messages, outcome = [str(error)], "refused"
         except BaseException:

@@ -34,6 +34,17 @@ class Glb:
         extension["lights"].append(element)
         return len(extension["lights"]) - 1
 
+    def sampler(self, seconds: int, values: NDArray[Any], is_held: bool) -> int:
+        """Adds a sampler to the animation, and returns its index. seconds: accessor of the times of its keys."""
+        mode = "STEP" if is_held else "LINEAR"
+        samplers: list[Json] = self._animation()["samplers"]
+        samplers.append({"input": seconds, "output": self.floats(values), "interpolation": mode})
+        return len(samplers) - 1
+
+    def animate(self, node: int, path: str, sampler: int) -> None:
+        """Animates the translation, rotation, scale or weights (`path`) of a node by a sampler."""
+        self._animation()["channels"].append({"sampler": sampler, "target": {"node": node, "path": path}})
+
     def floats(self, values: NDArray[Any]) -> int:
         """Adds an array of shape (N,) or (N, 2 to 4) as 32-bit floats, and returns the index of its accessor."""
         return self._accessor(np.ascontiguousarray(values, np.float32), _FLOAT)
@@ -58,6 +69,10 @@ class Glb:
         if self._data:
             chunks += struct.pack("<I", len(self._data)) + b"BIN\0" + self._data
         return b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
+
+    def _animation(self) -> Json:
+        animations: list[Json] = self.json.setdefault("animations", [{"channels": [], "samplers": []}])
+        return animations[0]
 
     def _accessor(self, values: NDArray[Any], component: int) -> int:
         kind = _COMPONENTS[1 if values.ndim == 1 else values.shape[1]]

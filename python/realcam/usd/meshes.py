@@ -9,29 +9,34 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
+from .deformation import PointSamples
 from .stage import OpenStage
-from .subdivision import INFINITE, Sharpness, subdivided
-from .surface import Surface, Values, triangulated
+from .subdivision import INFINITE, SCHEMES, Sharpness, subdivided
+from .surface import NORMAL_DELTAS, POINT_DELTAS, Surface, Values, triangulated
 
 _DOMAINS = {"constant": "constant", "uniform": "face", "varying": "point", "vertex": "point", "faceVarying": "corner"}
 
 
-def mesh_surface(opened: OpenStage, prim: Usd.Prim, primvars: Iterable[str]) -> Surface | None:
+def mesh_surface(
+    opened: OpenStage, prim: Usd.Prim, primvars: Iterable[str], samples: PointSamples | None = None
+) -> Surface | None:
     """Returns the surface of a mesh with some of its primvars and, as "normals", its normals; None if it is empty.
 
-    Raises SceneFileError if its indices are invalid.
+    samples: if given, the surface is that of the first one, with the displacements to the others as POINT_DELTAS and
+    NORMAL_DELTAS. Raises SceneFileError if its indices are invalid.
     """
     mesh, time = UsdGeom.Mesh(prim), opened.time
-    for attribute in (mesh.GetPointsAttr(), mesh.GetFaceVertexIndicesAttr()):
-        if attribute.ValueMightBeTimeVarying():
-            opened.notices.add(attribute.GetPath(), "its values over time are left out; the first one is used")
-    points = _array(mesh.GetPointsAttr().Get(time), np.float64).reshape(-1, 3)
+    rows = samples.points[0] if samples else mesh.GetPointsAttr().Get(time)
+    points = _array(rows, np.float64).reshape(-1, 3)
     counts = _array(mesh.GetFaceVertexCountsAttr().Get(time), np.int64)
     corners = _array(mesh.GetFaceVertexIndicesAttr().Get(time), np.int64)
     _check(opened, prim, points, counts, corners)
     if not len(counts) or not len(points):
         return None
     surface = Surface(points, counts, corners, np.arange(len(counts)))
+    if samples:
+        deltas = np.hstack([sample - points for sample in samples.points[1:]])
+        surface = surface.with_values(**{POINT_DELTAS: Values(deltas, "point")})
     api = UsdGeom.PrimvarsAPI(prim)
     for name in primvars:
         values = _primvar(opened, api.FindPrimvarWithInheritance(name), surface)
@@ -39,12 +44,11 @@ def mesh_surface(opened: OpenStage, prim: Usd.Prim, primvars: Iterable[str]) -> 
             surface = surface.with_values(**{name: values})
     scheme = str(mesh.GetSubdivisionSchemeAttr().Get(time))
     if scheme in ("none", "bilinear"):
-        normals = _normals(opened, mesh, api, surface)
-        surface = surface.with_values(normals=normals) if normals else surface
+        surface = _with_normals(opened, mesh, surface, samples)
     if (counts < 3).any():
         opened.notices.add(prim.GetPath(), "faces with fewer than three corners are left out")
         surface = surface.kept(counts >= 3)
-    if scheme in ("catmullClark", "loop"):
+    if scheme in SCHEMES:
         surface = _subdivided(opened, mesh, surface, scheme)
     elif scheme not in ("none", "bilinear"):
         opened.notices.add(prim.GetPath(), f"subdivisionScheme {scheme}: the mesh is not subdivided")
@@ -87,22 +91,41 @@ def _check(
         raise opened.fail(prim, "points: expected finite numbers")
 
 
-def _primvar(opened: OpenStage, primvar: UsdGeom.Primvar, surface: Surface) -> Values | None:
+def _primvar(
+    opened: OpenStage, primvar: UsdGeom.Primvar, surface: Surface, time: Usd.TimeCode | None = None
+) -> Values | None:
+    """Returns a primvar at a time; None: at the start of the stage, with a notice if it has values over time."""
     if not primvar or not primvar.HasValue():
         return None
-    if primvar.ValueMightBeTimeVarying():
+    if time is None and primvar.ValueMightBeTimeVarying():
         opened.notices.add(primvar.GetAttr().GetPath(), "its values over time are left out; the first one is used")
-    rows = _array(primvar.ComputeFlattened(opened.time), np.float64)
+    rows = _array(primvar.ComputeFlattened(opened.time if time is None else time), np.float64)
     return _values(opened, primvar.GetAttr(), rows, str(primvar.GetInterpolation()), surface)
 
 
-def _normals(opened: OpenStage, mesh: UsdGeom.Mesh, api: UsdGeom.PrimvarsAPI, surface: Surface) -> Values | None:
-    """Returns the authored normals, primvars:normals before normals; None if there are none, or they are no vectors."""
-    primvar = api.GetPrimvar("normals")
+def _with_normals(opened: OpenStage, mesh: UsdGeom.Mesh, surface: Surface, samples: PointSamples | None) -> Surface:
+    """Returns a surface with the authored normals, and their changes at the samples of the points."""
+    if not samples:
+        normals = _normals(opened, mesh, surface)
+        return surface.with_values(normals=normals) if normals else surface
+    first, *others = (_normals(opened, mesh, surface, Usd.TimeCode(time)) for time in samples.times)
+    if not first:
+        return surface
+    deltas = np.hstack([other.rows - first.rows if other else np.zeros_like(first.rows) for other in others])
+    surface = surface.with_values(normals=first)
+    return surface.with_values(**{NORMAL_DELTAS: Values(deltas, first.domain)}) if deltas.any() else surface
+
+
+def _normals(
+    opened: OpenStage, mesh: UsdGeom.Mesh, surface: Surface, time: Usd.TimeCode | None = None
+) -> Values | None:
+    """Returns the authored normals, primvars:normals before normals; None if there are none, or they are no vectors.
+    time: as for _primvar."""
+    primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("normals")
     if primvar and primvar.HasValue():
-        values = _primvar(opened, primvar, surface)
+        values = _primvar(opened, primvar, surface, time)
     else:
-        rows = _array(mesh.GetNormalsAttr().Get(opened.time), np.float64)
+        rows = _array(mesh.GetNormalsAttr().Get(opened.time if time is None else time), np.float64)
         if not len(rows):
             return None
         values = _values(opened, mesh.GetNormalsAttr(), rows, str(mesh.GetNormalsInterpolation()), surface)

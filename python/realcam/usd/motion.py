@@ -32,21 +32,10 @@ def set_transform(opened: OpenStage, glb: Glb, node: Json, index: int, xformable
     if len(times) < 2:
         return
     seconds = glb.floats(np.array([opened.seconds(time) for time in times]))
-    channels: list[Json] = []
-    samplers: list[Json] = []
     for k, path in enumerate(("translation", "rotation", "scale")):
         values = np.array([row[k] for row in rows])
-        if np.ptp(values, axis=0).max() == 0:
-            continue
-        channels.append({"sampler": len(samplers), "target": {"node": index, "path": path}})
-        mode = "STEP" if is_held else "LINEAR"
-        samplers.append({"input": seconds, "output": glb.floats(values), "interpolation": mode})
-    animations = glb.json.setdefault("animations", [{"channels": [], "samplers": []}])
-    offset = len(animations[0]["samplers"])
-    for channel in channels:
-        channel["sampler"] += offset
-    animations[0]["channels"] += channels
-    animations[0]["samplers"] += samplers
+        if np.ptp(values, axis=0).max() > 0:
+            glb.animate(index, path, glb.sampler(seconds, values, is_held))
 
 
 def flat(matrix: Gf.Matrix4d) -> list[float]:

@@ -11,7 +11,7 @@ from .glb import Glb, Json
 from .gltf_material import TranslatedMaterial
 from .shading_network import DEFAULT_COLOUR
 from .stage import OpenStage
-from .surface import Surface, triangulated, vertex_arrays
+from .surface import NORMAL_DELTAS, POINT_DELTAS, Surface, triangulated, vertex_arrays
 
 # Pairs of indices of the prim's faces and their material; None: all faces that no other pair lists.
 FaceMaterials = list[tuple[np.ndarray | None, TranslatedMaterial]]
@@ -47,7 +47,20 @@ def _primitive(opened: OpenStage, glb: Glb, prim: Usd.Prim, surface: Surface, ma
     colours = _colours(material, values, len(points))
     if colours is not None:
         attributes["COLOR_0"] = glb.floats(colours)
-    return {"attributes": attributes, "indices": glb.indices(indices.ravel()), "material": material.index}
+    primitive = {"attributes": attributes, "indices": glb.indices(indices.ravel()), "material": material.index}
+    if POINT_DELTAS in values:
+        primitive["targets"] = _targets(glb, values)
+    return primitive
+
+
+def _targets(glb: Glb, values: dict[str, Any]) -> list[Json]:
+    """Returns the morph targets of a deforming surface."""
+    names = {"POSITION": POINT_DELTAS, "NORMAL": NORMAL_DELTAS}
+    columns = range(0, values[POINT_DELTAS].shape[1], 3)
+    return [
+        {kind: glb.floats(values[name][:, k : k + 3]) for kind, name in names.items() if name in values}
+        for k in columns
+    ]
 
 
 def _colours(material: TranslatedMaterial, values: dict[str, Any], count: int) -> np.ndarray | None:

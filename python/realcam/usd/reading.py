@@ -12,6 +12,7 @@ from pxr import Gf, Usd, UsdGeom, UsdLux, UsdShade, UsdSkel
 from .. import _core
 from .._core import RealcamError, Scene
 from .cameras import camera_json
+from .deformation import Deformations
 from .dome import Domes
 from .glb import Glb, Json
 from .lights import area_light, is_normalised, punctual_light, radiance_of, scaled, world_area
@@ -64,6 +65,7 @@ class Translation:
         self.glb = Glb()
         self.domes = Domes(opened)
         self._materials = Materials(opened, self.glb)
+        self._deformations = Deformations(opened, self.glb)
         self._meshes: dict[Any, int | None] = {}
         self._world = UsdGeom.XformCache(opened.time)
         up = UsdGeom.GetStageUpAxis(opened.stage)
@@ -126,6 +128,7 @@ class Translation:
             mesh = self._mesh_of(prim)
             if mesh is not None:
                 node["mesh"] = mesh
+                self._deformations.play(index, mesh)
         return index
 
     def _add_light(self, prim: Usd.Prim, node: Json) -> None:
@@ -178,15 +181,22 @@ class Translation:
             self.opened.notices.add(prim.GetPath(), "its skeleton is left out; it has the pose of its points")
         materials = self._materials_of(prim, light)
         names = {name for _, m in materials for name in (*m.uv_names, m.colours, m.opacities) if name}
+        samples = None
         if prim.IsA(UsdGeom.Mesh):
-            surface = mesh_surface(self.opened, prim, sorted(names))
+            samples = self._deformations.samples_of(prim)
+            surface = mesh_surface(self.opened, prim, sorted(names), samples)
         else:
             surface = shape_surface(prim, self.opened.time)
             if surface:
                 surface = shape_with_primvars(self.opened, prim, surface, sorted(names))
             elif shape_surface(prim, self.opened.time) is None and not _is_shape(prim):
                 self.opened.notices.add(prim.GetPath(), f"a {prim.GetTypeName()} is left out")
-        return add_mesh(self.opened, self.glb, prim, surface, materials) if surface else None
+        if not surface:
+            return None
+        mesh = add_mesh(self.opened, self.glb, prim, surface, materials)
+        if samples:
+            self._deformations.add(mesh, samples)
+        return mesh
 
     def _materials_of(self, prim: Usd.Prim, light: tuple[float, ...] | None) -> FaceMaterials:
         """Returns the materials of the prim's faces."""
@@ -203,6 +213,7 @@ class Translation:
         """Adds the instances of a point instancer as children of its node."""
         for matrix, part in self._instance_parts(instancer, 1):
             child = self.glb.add("nodes", {"mesh": part.mesh, "matrix": flat(part.matrix * matrix)})
+            self._deformations.play(child, part.mesh)
             self.glb.json["nodes"][node].setdefault("children", []).append(child)
 
     def _instance_parts(self, instancer: UsdGeom.PointInstancer, depth: int) -> Iterator[tuple[Gf.Matrix4d, _Part]]:

@@ -7,13 +7,13 @@ and corners of DeRose, Kass and Truong (1998). Texture coordinates of corners ar
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .surface import Floats, Indices, Surface, Values
+from .smooth_normals import with_smooth_normals
+from .surface import POINT_DELTAS, Floats, Indices, Surface, Values, next_corners, sums
 
+SCHEMES = ("catmullClark", "loop")
 LEVELS = 2
 MAX_FACES = 200_000  # of a mesh after subdivision; a mesh that would have more gets fewer levels
 INFINITE = 10.0  # sharpness from which a crease or corner stays sharp at all levels
@@ -42,15 +42,19 @@ class _Edges:
     sharpness: Floats
 
 
+def refined_size(corner_count: int) -> int:
+    """Returns the number of faces, and about that of points, after the subdivision of a mesh."""
+    levels = _levels(corner_count)
+    return corner_count * 4 ** (levels - 1) if levels else corner_count
+
+
 def subdivided(surface: Surface, scheme: str, sharpness: Sharpness) -> Surface:
     """Returns a subdivided surface with smooth normals.
 
     scheme: "catmullClark", or "loop" for triangles. Primvars of points are subdivided as the points are, those of
     corners linearly.
     """
-    levels = LEVELS
-    while levels > 0 and len(surface.corners) * 4 ** (levels - 1) > MAX_FACES:
-        levels -= 1
+    levels = _levels(len(surface.corners))
     edge_points = sharpness.edges
     edge_values: Floats = np.asarray(sharpness.edge_values, np.float64)
     corner_values: Floats = np.zeros(len(surface.points))
@@ -64,24 +68,23 @@ def subdivided(surface: Surface, scheme: str, sharpness: Sharpness) -> Surface:
         surface, edge_points, edge_values, corner_values = refine(surface, edges, corner_values)
     if levels and scheme == "catmullClark":
         surface = _at_limit(surface, _edges_of(surface, edge_points, edge_values), corner_values)
-    return surface.with_values(normals=Values(_smooth_normals(surface), "point"))
+    return with_smooth_normals(surface)
+
+
+def _levels(corner_count: int) -> int:
+    levels = LEVELS
+    while levels > 0 and corner_count * 4 ** (levels - 1) > MAX_FACES:
+        levels -= 1
+    return levels
 
 
 def _points_of_one_face(surface: Surface) -> Indices:
     return np.flatnonzero(np.bincount(surface.corners, minlength=len(surface.points)) == 1)
 
 
-def _next_corners(counts: Indices) -> Indices:
-    """Returns the index of the next corner of the same face, for each corner."""
-    following = np.arange(counts.sum()) + 1
-    ends = np.cumsum(counts)
-    following[ends - 1] = ends - counts
-    return following
-
-
 def _edges_of(surface: Surface, crease_ends: Indices, crease_values: Floats) -> _Edges:
     count = len(surface.points)
-    pairs = np.stack([surface.corners, surface.corners[_next_corners(surface.counts)]], axis=-1)
+    pairs = np.stack([surface.corners, surface.corners[next_corners(surface.counts)]], axis=-1)
     pairs.sort(axis=-1)
     keys, of_corner, uses = np.unique(pairs[:, 0] * count + pairs[:, 1], return_inverse=True, return_counts=True)
     sharpness = np.where(uses == 2, 0.0, INFINITE)  # boundaries, and edges of three faces
@@ -92,11 +95,6 @@ def _edges_of(surface: Surface, crease_ends: Indices, crease_values: Floats) -> 
         exists = keys[found] == wanted
         np.maximum.at(sharpness, found[exists], crease_values[exists])
     return _Edges(np.stack([keys // count, keys % count], axis=-1), of_corner.ravel(), uses, sharpness)
-
-
-def _sums(index: Indices, rows: Floats, count: int) -> Floats:
-    """Returns the sums of rows, (N, C), with equal index, (count, C)."""
-    return np.stack([np.bincount(index, column, minlength=count) for column in rows.T], axis=-1)
 
 
 def _channels(surface: Surface) -> tuple[Floats, list[tuple[str, int]]]:
@@ -112,7 +110,7 @@ def _vertex_points(rows: Floats, smooth: Floats, edges: _Edges, corner_values: F
     is_sharp = edges.sharpness > 0
     ends, values = edges.ends[is_sharp], edges.sharpness[is_sharp]
     number = np.bincount(ends.ravel(), minlength=count)
-    others = _sums(np.concatenate([ends[:, 0], ends[:, 1]]), rows[np.concatenate([ends[:, 1], ends[:, 0]])], count)
+    others = sums(np.concatenate([ends[:, 0], ends[:, 1]]), rows[np.concatenate([ends[:, 1], ends[:, 0]])], count)
     crease = 0.75 * rows + others / 8
     mean = np.bincount(ends.ravel(), np.repeat(values, 2), minlength=count) / np.maximum(number, 1)
     out: Floats = smooth.copy()
@@ -143,16 +141,16 @@ def _catmull_clark(surface: Surface, edges: _Edges, corner_values: Floats) -> _R
     counts, corners = surface.counts, surface.corners
     point_count, edge_count, face_count = len(rows), len(edges.ends), len(counts)
     face_of = np.repeat(np.arange(face_count), counts)
-    centres = _sums(face_of, rows[corners], face_count) / counts[:, None]
-    of_edge = _sums(edges.of_corner, centres[face_of], edge_count)
+    centres = sums(face_of, rows[corners], face_count) / counts[:, None]
+    of_edge = sums(edges.of_corner, centres[face_of], edge_count)
     smooth_edges = (rows[edges.ends].sum(axis=1) + of_edge) / 4
     new_edges = _edge_points(rows, smooth_edges, edges)
     valence = np.maximum(np.bincount(corners, minlength=point_count), 1)[:, None]
-    face_mean = _sums(corners, centres[face_of], point_count) / valence
+    face_mean = sums(corners, centres[face_of], point_count) / valence
     neighbours = np.concatenate([edges.ends[:, 0], edges.ends[:, 1]])
     middles = np.tile(rows[edges.ends].mean(axis=1), (2, 1))
     edge_valence = np.maximum(np.bincount(neighbours, minlength=point_count), 1)[:, None]
-    edge_mean = _sums(neighbours, middles, point_count) / edge_valence
+    edge_mean = sums(neighbours, middles, point_count) / edge_valence
     smooth = (face_mean + 2 * edge_mean + (edge_valence - 3) * rows) / edge_valence
     new_points = _vertex_points(rows, smooth, edges, corner_values)
     new_rows = np.vstack([new_points, new_edges, centres])
@@ -181,7 +179,7 @@ def _catmull_clark(surface: Surface, edges: _Edges, corner_values: Floats) -> _R
 
 
 def _previous_corners(counts: Indices) -> Indices:
-    following = _next_corners(counts)
+    following = next_corners(counts)
     previous = np.empty_like(following)
     previous[following] = np.arange(len(following))
     return previous
@@ -202,8 +200,8 @@ def _refined_values(
             values[name] = Values(v.rows[parents], "face")
         elif v.domain == "corner":
             rows = np.asarray(v.rows, np.float64)
-            halves = (rows + rows[_next_corners(surface.counts)]) / 2
-            centres = _sums(face_of, rows, len(surface.counts)) / surface.counts[:, None]
+            halves = (rows + rows[next_corners(surface.counts)]) / 2
+            centres = sums(face_of, rows, len(surface.counts)) / surface.counts[:, None]
             quads = np.stack([rows, halves, centres[face_of], halves[previous]], axis=1)
             values[name] = Values(quads.reshape(-1, rows.shape[1]), "corner")
         elif v.domain == "constant":
@@ -224,11 +222,11 @@ def _loop(surface: Surface, edges: _Edges, corner_values: Floats) -> _Refined:
     triangles = surface.corners.reshape(-1, 3)
     point_count, edge_count = len(rows), len(edges.ends)
     of_corner = edges.of_corner.reshape(-1, 3)  # edge from corner k to k + 1, opposite to corner k + 2
-    opposite = _sums(of_corner.ravel(), rows[np.roll(triangles, 1, axis=1).ravel()], edge_count)
+    opposite = sums(of_corner.ravel(), rows[np.roll(triangles, 1, axis=1).ravel()], edge_count)
     new_edges = _edge_points(rows, 3 / 8 * rows[edges.ends].sum(axis=1) + opposite / 8, edges)
     both = np.concatenate([edges.ends[:, 0], edges.ends[:, 1]])
     valence = np.maximum(np.bincount(both, minlength=point_count), 1)[:, None]
-    ring = _sums(both, rows[np.concatenate([edges.ends[:, 1], edges.ends[:, 0]])], point_count)
+    ring = sums(both, rows[np.concatenate([edges.ends[:, 1], edges.ends[:, 0]])], point_count)
     beta = (5 / 8 - (3 / 8 + np.cos(2 * np.pi / valence) / 4) ** 2) / valence  # Loop 1987
     new_points = _vertex_points(rows, (1 - valence * beta) * rows + beta * ring, edges, corner_values)
     new_rows = np.vstack([new_points, new_edges])
@@ -261,34 +259,25 @@ def _loop(surface: Surface, edges: _Edges, corner_values: Floats) -> _Refined:
 def _at_limit(surface: Surface, edges: _Edges, corner_values: Floats) -> Surface:
     """Moves the points of quads to their positions on the limit surface (Halstead, Kass and DeRose 1993).
 
-    On creases and boundaries the limit is that of a cubic B-spline curve, (a + 4 p + b) / 6.
+    On creases and boundaries the limit is that of a cubic B-spline curve, (a + 4 p + b) / 6. Displacements follow
+    the same linear rules.
     """
-    points = np.asarray(surface.points, np.float64)
+    deltas = surface.values.get(POINT_DELTAS)
+    points = np.asarray(surface.points if deltas is None else np.hstack([surface.points, deltas.rows]), np.float64)
     count = len(points)
     corners = surface.corners.reshape(-1, 4)
-    opposite = _sums(corners.ravel(), points[np.roll(corners, 2, axis=1).ravel()], count)
+    opposite = sums(corners.ravel(), points[np.roll(corners, 2, axis=1).ravel()], count)
     both = np.concatenate([edges.ends[:, 0], edges.ends[:, 1]])
     others = np.concatenate([edges.ends[:, 1], edges.ends[:, 0]])
     valence = np.maximum(np.bincount(both, minlength=count), 1)[:, None]
-    ring = _sums(both, points[others], count)
+    ring = sums(both, points[others], count)
     limit = (valence**2 * points + 4 * ring + opposite) / (valence * (valence + 5))
     is_sharp = np.tile(edges.sharpness > 0, 2)
     number = np.bincount(both[is_sharp], minlength=count)
-    along = _sums(both[is_sharp], points[others[is_sharp]], count)
+    along = sums(both[is_sharp], points[others[is_sharp]], count)
     on_crease = number == 2
     limit[on_crease] = ((4 * points + along) / 6)[on_crease]
     stays = (number > 2) | (corner_values > 0) | (np.bincount(surface.corners, minlength=count) == 0)
     limit[stays] = points[stays]
-    return replace(surface, points=limit)
-
-
-def _smooth_normals(surface: Surface) -> NDArray[Any]:
-    """Returns the normals of points, (P, 3): the means of the adjacent faces' normals, weighted by area."""
-    points = np.asarray(surface.points, np.float64)[surface.corners]
-    face_of = np.repeat(np.arange(len(surface.counts)), surface.counts)
-    centres = _sums(face_of, points, len(surface.counts)) / surface.counts[:, None]
-    local = points - centres[face_of]
-    areas = _sums(face_of, np.cross(local, local[_next_corners(surface.counts)]), len(surface.counts))
-    normals = _sums(surface.corners, areas[face_of], len(surface.points))
-    size = np.linalg.norm(normals, axis=-1, keepdims=True)
-    return np.asarray(normals / np.where(size > 0, size, 1))
+    surface = replace(surface, points=limit[:, :3])
+    return surface if deltas is None else surface.with_values(**{POINT_DELTAS: Values(limit[:, 3:], "point")})

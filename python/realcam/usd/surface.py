@@ -9,6 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+# Names of values that displace a deforming surface, three columns for each time sample after the first. The name of a
+# primvar has no blank.
+POINT_DELTAS, NORMAL_DELTAS = "point deltas", "normal deltas"
+
 _MAX_EARS = 500  # corners of a concave face; cutting ears takes the third power of their number
 
 Floats = NDArray[np.floating[Any]]
@@ -143,21 +147,40 @@ def vertex_arrays(surface: Surface, triangles: Triangles) -> tuple[Floats, dict[
     """
     used = triangles.corners.ravel()
     points = surface.corners[used]
-    by_corner = {name: v for name, v in surface.values.items() if v.domain in ("corner", "face")}
-    rows = {name: v.rows[_elements(v, surface, triangles, used, points)] for name, v in surface.values.items()}
+    by_corner = [name for name, v in surface.values.items() if v.domain in ("corner", "face")]
+    elements = {name: _elements(v, surface, triangles, used, points) for name, v in surface.values.items()}
     if by_corner:
-        keys = [points[:, None].astype(np.float64)] + [rows[name].astype(np.float64) for name in by_corner]
+        rows = [surface.values[name].rows[elements[name]] for name in by_corner if name != NORMAL_DELTAS]
+        keys = [row.astype(np.float64) for row in (points[:, None], *rows)]
         table = np.ascontiguousarray(np.hstack(keys))
         whole = table.view(np.dtype((np.void, table.dtype.itemsize * table.shape[1]))).ravel()
         _, first, inverse = np.unique(whole, return_index=True, return_inverse=True)
+        if NORMAL_DELTAS in by_corner:
+            deltas = surface.values[NORMAL_DELTAS].rows
+            first, inverse = _split(first, inverse.ravel(), deltas, elements[NORMAL_DELTAS])
     else:
         first = np.full(len(surface.points), -1)
         first[points] = np.arange(len(points))
         is_used = first >= 0
         inverse = (np.cumsum(is_used) - 1)[points]
         first = first[is_used]
-    values = {name: row[first] for name, row in rows.items()}
+    values = {name: v.rows[elements[name][first]] for name, v in surface.values.items()}
     return surface.points[points[first]], values, inverse.reshape(-1, 3)
+
+
+def _split(first: Indices, inverse: Indices, rows: Floats, elements: Indices) -> tuple[Indices, Indices]:
+    """Gives corners their own vertices where their rows differ from those of the first corner of their vertex. Returns
+    the new `first` and `inverse`.
+
+    A table of the rows of all corners, as keys of vertices, would take gigabytes for the samples of a film.
+    """
+    shared = elements[first][inverse]
+    differs = np.zeros(len(inverse), bool)
+    for column in rows.T:
+        differs |= column[elements] != column[shared]
+    own = np.flatnonzero(differs)
+    inverse[own] = len(first) + np.arange(len(own))
+    return np.concatenate([first, own]), inverse
 
 
 def _elements(values: Values, surface: Surface, triangles: Triangles, used: Indices, points: Indices) -> Indices:
@@ -167,3 +190,16 @@ def _elements(values: Values, surface: Surface, triangles: Triangles, used: Indi
     if values.domain == "face":
         return np.repeat(triangles.face_rows, 3)
     return points if values.domain == "point" else np.zeros_like(points)
+
+
+def next_corners(counts: Indices) -> Indices:
+    """Returns the index of the next corner of the same face, for each corner."""
+    following = np.arange(counts.sum()) + 1
+    ends = np.cumsum(counts)
+    following[ends - 1] = ends - counts
+    return following
+
+
+def sums(index: Indices, rows: Floats, count: int) -> Floats:
+    """Returns the sums of rows, (N, C), with equal index, (count, C)."""
+    return np.stack([np.bincount(index, column, minlength=count) for column in rows.T], axis=-1)
