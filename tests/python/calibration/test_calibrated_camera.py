@@ -73,6 +73,7 @@ def test_a_fisheye_of_190_degrees() -> None:
     assert (picture[2, 2] == 0).all()  # beyond the model's largest angle
 
 
+@pytest.mark.slow
 def test_pixels_beside_a_fold_are_precise_or_black() -> None:
     """At a fold the angle grows with the square root of the distance, which no grid resolves."""
     focal, fold = 500.0, np.radians(112.0)

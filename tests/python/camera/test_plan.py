@@ -173,6 +173,7 @@ def test_coloured_ghosts_call_for_dispersion() -> None:
     assert colour > 1, "the picture shows it"
 
 
+@pytest.mark.slow
 def test_times_are_measured_where_they_are_asked_for() -> None:
     camera = camera_of(film=rc.Film(3.6, 2.4, (45, 30)))
     scene = board(10.0, radiance=150)

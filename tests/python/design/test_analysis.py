@@ -103,6 +103,7 @@ def test_colours_and_surfaces_are_named(computed: dict[str, object]) -> None:
     assert "0°" in analysis.plot_figure("zernike", computed["zernike"]).axes[0].get_title()
 
 
+@pytest.mark.slow
 def test_curves_over_the_field_have_no_corners() -> None:
     """Straight lines between their points leave the curve by less than a line of the plot is wide: 1 in 100 of its
     range. Points halfway between theirs show it. The phone lens's distortion has three turns, its field curves two."""
@@ -370,6 +371,7 @@ def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest
 
 
 @pytest.mark.pictures
+@pytest.mark.slow
 def test_a_report_begins_with_the_lens(tmp_path: Path) -> None:
     lens = rc.Lens.load("tessar-50mm")
     analysis.save_report(lens, tmp_path / "r.html")

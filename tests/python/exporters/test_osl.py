@@ -127,6 +127,7 @@ def test_a_diaphragm_nearly_as_small_as_the_blocked_middle(program: Callable[[st
 @needs_compiler
 @pytest.mark.parametrize("name", [name for name in LENSES if "mirror" not in name])
 @pytest.mark.parametrize(("focus", "stops"), [(0.0, 0.0), (0.3, 1.3), (1.0, 4.5)])
+@pytest.mark.slow
 def test_most_rays_pass(program: Callable[[str], Callable[..., Rays]], name: str, focus: float, stops: float) -> None:
     from realcam.osl import focus_range
 
@@ -159,6 +160,7 @@ def test_blades_leave_as_much_open_as_a_circle(
 
 
 @needs_compiler
+@pytest.mark.slow
 def test_each_wavelength_takes_its_own_way_and_all_together_are_white(
     program: Callable[[str], Callable[..., Rays]],
 ) -> None:

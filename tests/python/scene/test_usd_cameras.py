@@ -173,6 +173,7 @@ def test_frames_are_taken_again_after_a_change_of_a_sublayer(tmp_path: Path) -> 
 
 
 @pytest.mark.picture_files
+@pytest.mark.slow
 def test_frames_are_taken_again_with_another_variant_and_in_other_air(tmp_path: Path) -> None:
     stage = camera_stage(tmp_path / "stage.usda")
     variants = stage.GetPrimAtPath("/Box").GetVariantSets().AddVariantSet("colour")

@@ -48,6 +48,7 @@ def test_a_picture_that_is_not_wanted_any_more_is_given_up(spheres: rc.Scene) ->
 
 
 @wants_it
+@pytest.mark.slow
 def test_only_the_first_frame_of_a_change_is_noisy_where_denoising_is_slow(watched: Watched) -> None:
     """The first one has all pixels; each later frame is denoised, with at least as many pixels as the previous one."""
     watched.loop._taker._denoiser._rates.extend([1.0] * 5)  # pixels a second

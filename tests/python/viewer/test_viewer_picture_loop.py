@@ -45,6 +45,7 @@ def test_a_picture_is_refined_to_the_noise_that_is_asked_for(watched: Watched) -
     assert finer.samples > last.samples
 
 
+@pytest.mark.slow
 def test_the_time_that_is_left_is_told_truly(watched: Watched) -> None:
     """In the second half, the reported time is right within a factor of two: the square of the noise is estimated to
     two fifths, and the load of a machine varies."""
@@ -114,6 +115,7 @@ def test_every_request_that_is_begun_gets_its_first_frame(watched: Watched) -> N
     assert gaps.max() < count / 2
 
 
+@pytest.mark.slow
 def test_a_frame_that_refines_is_given_up_for_a_change(watched: Watched) -> None:
     big = rc.Film(36, 24, (1200, 800))
     watched.loop.submit(PictureRequest(camera(film=big), noise_codes=0.01))
@@ -189,6 +191,7 @@ def test_it_sleeps_when_the_picture_is_done(watched: Watched) -> None:
     assert len(watched.frames) == count
 
 
+@pytest.mark.slow
 def test_the_picture_that_is_saved_is_the_one_asked_for_last(watched: Watched) -> None:
     big = rc.Film(36, 24, (900, 600))
     for k in range(1, 6):
