@@ -142,7 +142,7 @@ class CameraParameters:
                 of_distances, of_stop = rings[parameter]
                 rates: dict[Parameter, float] = dict(of_distances.items())
                 return rates | ({"f_number": of_stop / by_f_number} if of_stop else {})
-            # That of rc.render_gradient scales the rims of the camera at these values.
+            # rc.render_gradient differentiates by a factor of the rims at these values.
             return {parameter: 1 / at[_RIMS] if parameter == _RIMS else 1.0}
 
         return [direction(parameter) for parameter in self.parameters]

@@ -24,21 +24,25 @@ def linear_problem() -> tuple[Doubles, Doubles, Doubles]:
     return matrix, observed, variance
 
 
+def arguments_of(matrix: Doubles, observed: Doubles, variance: Doubles) -> dict[str, Any]:
+    """Arguments of rc.fit_pictures for pictures that are linear in the values."""
+    return {
+        "pictures_of": lambda values, block: np.tensordot(values, matrix, 1),
+        "derivatives_of": lambda values, block, seed: matrix,
+        "observed": observed,
+        "variance": variance,
+        "start": np.zeros(3),
+        "scale": np.ones(3),
+        "blocks": (2, 1),
+    }
+
+
 @pytest.mark.parametrize("has_prior", [False, True])
 def test_a_linear_problem_has_the_solution_of_linear_least_squares(has_prior: bool) -> None:
     matrix, observed, variance = linear_problem()
     mean, deviation = np.array([0.5, 0.0, 0.0]), np.array([0.1, np.inf, 0.2])
-    fit = rc.fit_pictures(
-        lambda values, block: np.tensordot(values, matrix, 1),
-        lambda values, block, seed: matrix,
-        observed,
-        variance,
-        np.zeros(3),
-        np.ones(3),
-        prior=(mean, deviation) if has_prior else None,
-        blocks=(2, 1),
-        steps=30,
-    )
+    prior = (mean, deviation) if has_prior else None
+    fit = rc.fit_pictures(**arguments_of(matrix, observed, variance), prior=prior, steps=30)
     rows = (matrix / np.sqrt(variance)).reshape(3, -1)
     weights = 1 / deviation**2 if has_prior else np.zeros(3)
     information = rows @ rows.T + np.diag(weights)
@@ -129,32 +133,14 @@ def test_focus_and_yaw_are_found() -> None:
     ],
 )
 def test_wrong_arguments_are_refused(changes: dict[str, object], message: str) -> None:
-    matrix, observed, variance = linear_problem()
-    arguments: dict[str, Any] = {
-        "pictures_of": lambda values, block: np.tensordot(values, matrix, 1),
-        "derivatives_of": lambda values, block, seed: matrix,
-        "observed": observed,
-        "variance": variance,
-        "start": np.zeros(3),
-        "scale": np.ones(3),
-        "blocks": (2, 1),
-    }
     with pytest.raises(rc.InputError, match=message):
-        rc.fit_pictures(**{**arguments, **changes})
+        rc.fit_pictures(**{**arguments_of(*linear_problem()), **changes})
 
 
 def test_a_value_of_which_pictures_say_nothing_is_not_called_known() -> None:
     matrix, observed, variance = linear_problem()
     matrix = matrix * np.reshape([1, 0, 1], (3, 1, 1, 1, 1))
-    fit = rc.fit_pictures(
-        lambda values, block: np.tensordot(values, matrix, 1),
-        lambda values, block, seed: matrix,
-        observed,
-        variance,
-        np.zeros(3),
-        [1.0, 2.0, 1.0],
-        blocks=(2, 1),
-    )
+    fit = rc.fit_pictures(**{**arguments_of(matrix, observed, variance), "scale": [1.0, 2.0, 1.0]})
     assert fit.errors[1] == pytest.approx(2e6)
     assert max(fit.errors[0], fit.errors[2]) < 10
     deviations, axes = fit.directions([1.0, 2.0, 1.0])
