@@ -6,7 +6,7 @@ add_library(realcam_lens_io STATIC ${REALCAM_LENS_IO_SOURCES} ${REALCAM_LENS_FIL
 add_library(realcam::io ALIAS realcam_lens_io)
 set_target_properties(realcam_lens_io PROPERTIES EXPORT_NAME io)
 target_link_libraries(realcam_lens_io PUBLIC realcam_optics PRIVATE $<BUILD_INTERFACE:realcam_settings>)
-realcam_precompile_headers(realcam_lens_io)
+realcam_compile_in_bundles(realcam_lens_io)
 target_include_directories(realcam_lens_io SYSTEM PRIVATE ${TOMLPLUSPLUS_INCLUDE_DIR})
 
 install(TARGETS realcam_lens_io EXPORT realcamIoTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT io)

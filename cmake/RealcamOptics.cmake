@@ -18,12 +18,20 @@ add_library(realcam::optics ALIAS realcam_optics)
 set_target_properties(realcam_optics PROPERTIES EXPORT_NAME optics)
 target_compile_features(realcam_optics PUBLIC cxx_std_20)
 target_link_libraries(realcam_optics PRIVATE $<BUILD_INTERFACE:realcam_settings>)
-realcam_precompile_headers(realcam_optics)
+realcam_compile_in_bundles(realcam_optics)
 # Optimised for several machines, which takes many times as long to compile and is of no use for debugging.
 set(lane_sources adjoint_path.cpp outline_rays.cpp tangent_path.cpp)
 list(TRANSFORM lane_sources PREPEND ${PROJECT_SOURCE_DIR}/cpp/optics/derivatives/)
 set_source_files_properties(${lane_sources} PROPERTIES
-  COMPILE_OPTIONS "$<$<NOT:$<CONFIG:Debug>>:${REALCAM_KERNEL_FLAGS}>" SKIP_PRECOMPILE_HEADERS ON)
+  COMPILE_OPTIONS "$<$<NOT:$<CONFIG:Debug>>:${REALCAM_KERNEL_FLAGS}>")
+if(REALCAM_INSTRUCTION_SETS STREQUAL machine AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+  realcam_widest_instruction_set(widest)
+  if(NOT widest STREQUAL v2)
+    string(REPLACE v3 avx2 clone ${widest})
+    string(REPLACE v4 avx512f clone ${clone})
+    target_compile_definitions(realcam_optics PRIVATE REALCAM_CLONE="${clone}")
+  endif()
+endif()
 target_include_directories(realcam_optics PUBLIC
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/cpp>
   $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>

@@ -19,9 +19,8 @@ realcam_link_if_present(_core PRIVATE ${realcam_backends} realcam_image_io realc
 if(TARGET realcam_command)
   target_compile_definitions(_core PRIVATE REALCAM_HAS_PICTURES=1)
 endif()
-# Most of the time goes into templates of pybind11 that all files share.
-set_target_properties(_core PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/python
-                      UNITY_BUILD ${REALCAM_UNITY} UNITY_BUILD_BATCH_SIZE 9)
+set_target_properties(_core PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/python)
+realcam_compile_in_bundles(_core)
 install(TARGETS _core LIBRARY DESTINATION realcam COMPONENT python)
 install(FILES ${PROJECT_SOURCE_DIR}/scenes/demo.glb ${PROJECT_SOURCE_DIR}/scenes/demo.toml
         DESTINATION realcam/scenes COMPONENT python)

@@ -15,11 +15,6 @@ if(CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
   set(CMAKE_CUDA_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
 endif()
-# Else ccache keeps nothing of what is compiled with a precompiled header.
-if("${CMAKE_CXX_COMPILER_LAUNCHER}" MATCHES "ccache$")
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
-      ${CMAKE_CXX_COMPILER_LAUNCHER})
-endif()
 
 add_library(realcam_settings INTERFACE)
 target_compile_definitions(realcam_settings INTERFACE REALCAM_VERSION="${PROJECT_VERSION}")
@@ -71,10 +66,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   list(APPEND REALCAM_KERNEL_FLAGS -fno-thread-jumps)
 endif()
 
-# For targets of many files: the standard library's headers take longer to read than all others of most files. Sources
-# include what they use all the same; -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows whether they do.
-function(realcam_precompile_headers target)
-  target_precompile_headers(${target} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:${PROJECT_SOURCE_DIR}/cmake/precompiled.hpp>")
+# For targets of many files: the headers and templates that they share take longer to compile than what is their own.
+function(realcam_compile_in_bundles target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${REALCAM_UNITY})
 endfunction()
 
 # Targets exist only where their sources do.

@@ -86,12 +86,14 @@ struct Affine {
     }
 };
 
+inline constexpr double kDegree = std::numbers::pi / 180;  ///< one degree, in radians
+
 /// Returns the rotation about the fixed axes x, then y, then z, by angles in degrees, counter-clockwise when the axis
 /// points to the viewer.
 inline Affine<double> euler_rotation(Vec3d degrees) {
     // Rotation that takes axis a towards axis b.
     const auto rotation = [](double angle_deg, Vec3d Affine<double>::* a, Vec3d Affine<double>::* b) {
-        const double angle = angle_deg * (std::numbers::pi / 180);
+        const double angle = angle_deg * kDegree;
         Affine<double> map;
         const Vec3d u = map.*a, v = map.*b;
         map.*a = std::cos(angle) * u + std::sin(angle) * v;

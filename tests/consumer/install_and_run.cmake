@@ -15,7 +15,7 @@ list(APPEND alone -DCMAKE_BUILD_TYPE=Debug)
 
 function(install_part part optics_only lenses_only)
   file(REMOVE_RECURSE ${WORK}/${part}/prefix ${WORK}/${part}/build)
-  execute_process(COMMAND ${CMAKE_COMMAND} ${compiler} ${alone} -S ${REALCAM} -B ${WORK}/realcam -DCMAKE_UNITY_BUILD=ON
+  execute_process(COMMAND ${CMAKE_COMMAND} ${compiler} ${alone} -S ${REALCAM} -B ${WORK}/realcam
                           -DREALCAM_OPTICS_ONLY=${optics_only} -DREALCAM_LENSES_ONLY=${lenses_only}
                   OUTPUT_QUIET ${run})
   execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/realcam OUTPUT_QUIET ${run})

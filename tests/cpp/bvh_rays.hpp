@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 #include <vector>
 
 #include "bvh/build_wide_bvh.hpp"
 #include "bvh/traverse_wide_bvh.hpp"
 #include "scene/materials/light_sample.hpp"
+#include "scene/scene.hpp"
 
 namespace realcam::test {
 
@@ -29,6 +31,15 @@ struct Mesh {
     }
     WideBvh bvh() const { return build_wide_bvh(positions, triangles); }
 };
+
+/// A mesh of one material as an object of an assembly.
+inline std::shared_ptr<const Scene> scene_of(const Mesh& mesh, const Material& material = {}) {
+    Scene scene;
+    for (const Vec3f p : mesh.positions) scene.positions_m.push_back(static_cast<Vec3d>(p));
+    scene.triangles = mesh.triangles;
+    scene.materials = {material};
+    return std::make_shared<const Scene>(scene);
+}
 
 struct BvhRay {
     Vec3f origin, direction;

@@ -2,6 +2,7 @@
 // One ray at a time through a lens, in double precision and in the lens frame (z from the front vertex).
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "optics/trace/lens_path.hpp"
 
 namespace realcam::test {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct TracedRay {
     Vec3d origin, direction;

@@ -2,8 +2,6 @@
 
 #include <pybind11/stl.h>
 
-#include <numbers>
-
 #include "../../camera/sensor/sensor_response.hpp"
 #include "../../embree/sensor_exposure.hpp"
 #include "../../io/sensor/sensor_file.hpp"
@@ -100,12 +98,11 @@ void set_angular_response(SensorRequest& request, const Sensor& sensor, double f
     response.middle_column = 0.5f * static_cast<float>(request.width - 1);
     response.middle_row = 0.5f * static_cast<float>(height - 1);
     if (sensor.angular_response.size() < 2 || !std::isfinite(exit_pupil_distance_mm)) return;
-    const double degree = std::numbers::pi / 180;
-    const double largest = std::tan(sensor.angular_response.back().at * degree);
+    const double largest = std::tan(sensor.angular_response.back().at * kDegree);
     for (int k = 0; k <= AngularResponse::kSteps; ++k) {
         const double tangent = largest * std::sqrt(static_cast<double>(k) / AngularResponse::kSteps);
         response.at[k] = static_cast<float>(sensor_detail::table_at(
-            sensor.angular_response, std::min(std::atan(tangent) / degree, sensor.angular_response.back().at)));
+            sensor.angular_response, std::min(std::atan(tangent) / kDegree, sensor.angular_response.back().at)));
     }
     const double per_pixel = film_pitch_mm / exit_pupil_distance_mm / largest;
     response.steps_per_square = static_cast<float>(AngularResponse::kSteps * per_pixel * per_pixel);

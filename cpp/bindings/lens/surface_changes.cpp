@@ -46,7 +46,7 @@ T value_or(const py::dict& dict, const char* key, const std::string& what, T mis
 
 using Pair = std::pair<double, double>;
 
-Vec2d vector_of(Pair v) {
+Vec2d vec2_of(Pair v) {
     return {v.first, v.second};
 }
 
@@ -106,16 +106,16 @@ void change_aperture(ApertureShape& shape, const py::dict& dict) {
     if (!dict.empty()) {
         const std::string outline = only_key(dict, what, {"circle_mm", "ellipse_mm", "rectangle_mm", "polygon_mm"});
         allow_keys(dict, what, {outline, "offset_mm"});
-        next.offset = vector_of(value_or<Pair>(dict, "offset_mm", what, {0, 0}));
+        next.offset = vec2_of(value_or<Pair>(dict, "offset_mm", what, {0, 0}));
         if (outline == "polygon_mm") {
             next.kind = ApertureOutline::polygon;
             for (const Pair& corner : value_of<std::vector<Pair>>(dict, "polygon_mm", what))
-                next.corners.push_back(vector_of(corner));
+                next.corners.push_back(vec2_of(corner));
         } else if (outline == "circle_mm") {
             next.half.x = next.half.y = value_of<double>(dict, "circle_mm", what);
         } else {
             next.kind = outline == "ellipse_mm" ? ApertureOutline::ellipse : ApertureOutline::rectangle;
-            next.half = vector_of(value_of<Pair>(dict, outline.c_str(), what));
+            next.half = vec2_of(value_of<Pair>(dict, outline.c_str(), what));
         }
     }
     shape = next;
@@ -143,8 +143,8 @@ void add_obscuration(const py::dict& dict, double clear_semi_diameter, std::vect
     if (outline == "circle_mm")
         obscuration.half.x = obscuration.half.y = value_of<double>(dict, "circle_mm", what);
     else
-        obscuration.half = vector_of(value_of<Pair>(dict, outline.c_str(), what));
-    obscuration.offset = vector_of(value_or<Pair>(dict, "offset_mm", what, {0, 0}));
+        obscuration.half = vec2_of(value_of<Pair>(dict, outline.c_str(), what));
+    obscuration.offset = vec2_of(value_or<Pair>(dict, "offset_mm", what, {0, 0}));
     obscuration.angle_deg = value_or(dict, "angle_deg", what, 0.0);
     obscurations.push_back(obscuration);
 }

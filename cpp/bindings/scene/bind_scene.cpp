@@ -104,7 +104,6 @@ Assembly with_point_light(const Assembly& scene, const Triple& position, const C
 
 Assembly with_spot_light(const Assembly& scene, const Triple& position, const Triple& direction,
                          const Colour& intensity, double inner_cone_deg, double outer_cone_deg) {
-    constexpr double kDegree = 0.017453292519943295;
     const Vec3d axis = unit_vector("the spot's direction", direction);
     if (!(inner_cone_deg >= 0 && inner_cone_deg <= outer_cone_deg && outer_cone_deg <= 90))
         throw InputError("expected 0 <= inner_cone_deg <= outer_cone_deg <= 90");

@@ -53,7 +53,7 @@ Typed<"dict[str, Any]", py::dict> interface_of(const SharedDeviceArray& array) {
                     "data"_a = py::make_tuple(address, false), "strides"_a = py::none(), "stream"_a = py::none());
 }
 
-std::string repr_of(const SharedDeviceArray& array) {
+std::string array_repr(const SharedDeviceArray& array) {
     return "realcam.DeviceArray(shape=" + py::repr(shape_tuple(array)).cast<std::string>() +
            ", dtype=" + py::str(dtype_of(array)).cast<std::string>() + ", device=\"" + device_of(array) + "\")";
 }
@@ -75,7 +75,7 @@ last array that shares it is deleted.)")
              "DeviceError.")
         .def("__len__",
              [](const SharedDeviceArray& array) { return array.shape().empty() ? 0 : array.shape().front(); })
-        .def("__repr__", &repr_of)
+        .def("__repr__", &array_repr)
         .def("__reduce__",
              [](const SharedDeviceArray&) -> py::tuple {
                  throw py::type_error("a DeviceArray cannot be pickled; pickle the result of its numpy() instead");

@@ -32,23 +32,20 @@ constexpr ColourKey kColours[] = {{"Ka", &MtlMaterial::Ka},
                                   {"Tf", &MtlMaterial::Tf}};
 
 /// Range of valid numbers.
-struct Range {
+struct NumberRange {
     double min, max;
 };
-constexpr Range kUnit{0, 1};
+constexpr NumberRange kUnitRange{0, 1};
 
 /// Statement with a number.
 struct NumberKey {
     std::string_view name;
     std::variant<float MtlMaterial::*, std::optional<float> MtlMaterial::*> member;
-    Range range;
+    NumberRange range;
 };
-constexpr NumberKey kNumbers[] = {{"Ns", &MtlMaterial::Ns, {0, kLargestFloat}},
-                                  {"Ni", &MtlMaterial::Ni, {0.001, 10}},
-                                  {"Pr", &MtlMaterial::Pr, kUnit},
-                                  {"Pm", &MtlMaterial::Pm, kUnit},
-                                  {"Pc", &MtlMaterial::Pc, kUnit},
-                                  {"Pcr", &MtlMaterial::Pcr, kUnit}};
+constexpr NumberKey kNumbers[] = {{"Ns", &MtlMaterial::Ns, {0, kLargestFloat}}, {"Ni", &MtlMaterial::Ni, {0.001, 10}},
+                                  {"Pr", &MtlMaterial::Pr, kUnitRange},         {"Pm", &MtlMaterial::Pm, kUnitRange},
+                                  {"Pc", &MtlMaterial::Pc, kUnitRange},         {"Pcr", &MtlMaterial::Pcr, kUnitRange}};
 
 /// Statement with a texture.
 struct PictureKey {
@@ -247,7 +244,7 @@ private:
             not_modelled_.insert("d -halo");
         }
         const std::size_t out_of_range = out_of_range_.count;
-        const std::optional<float> value = number_of(keyword, arguments, kUnit);
+        const std::optional<float> value = number_of(keyword, arguments, kUnitRange);
         if (!value) return;
         if (is_d) {
             material_->d = *value;
@@ -299,7 +296,7 @@ private:
     }
 
     /// Returns a statement's number, clamped to its range; std::nullopt, after counting the line, if there is none.
-    std::optional<float> number_of(std::string_view keyword, std::string_view arguments, Range range) {
+    std::optional<float> number_of(std::string_view keyword, std::string_view arguments, NumberRange range) {
         const std::optional<double> value = take_number_word(arguments);
         if (!value) {
             unread_.add(lines_.number());

@@ -5,12 +5,14 @@
 #include "../../math/vec3.hpp"
 
 // Attribute of functions that take most of the time: gcc compiles a version for each of several instruction sets, and
-// the loader selects one. It is not used with clang, which requires the attribute in declarations, too, and cannot
-// combine it with `flatten`.
-#if defined(__x86_64__) && defined(__linux__) && !defined(__clang__)
-#define REALCAM_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
+// the loader selects one. A build for one machine defines REALCAM_CLONE, the only version that it needs. The attribute
+// is not used with clang, which requires it in declarations, too, and cannot combine it with `flatten`.
+#if !defined(__x86_64__) || !defined(__linux__) || defined(__clang__)
 #define REALCAM_CLONES
+#elif defined(REALCAM_CLONE)
+#define REALCAM_CLONES __attribute__((target(REALCAM_CLONE)))
+#else
+#define REALCAM_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
 
 namespace REALCAM_NAMESPACE {

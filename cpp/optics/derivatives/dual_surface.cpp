@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "../lens/lens_changes.hpp"
@@ -11,8 +10,6 @@
 namespace realcam {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Calls f(a's number, b's number) for all differentiable numbers of two surface views.
 template <class A, class B, class F>
@@ -62,7 +59,7 @@ void for_all_numbers(A& a, B& b, F&& f) {
 }
 
 /// Returns a translation along z.
-Affine<Dual8> along_axis(const Dual8& distance) {
+Affine<Dual8> dual_along_axis(const Dual8& distance) {
     Affine<Dual8> frame;
     frame.origin.z = distance;
     return frame;
@@ -176,7 +173,7 @@ DualLens::DualLens(const LensSystem& lens, double wavelength_nm, const std::vect
 Affine<Dual8> DualLens::neighbour(const LensSystem& lens, int from, int to) const {
     if (to < from) return inverse(neighbour(lens, to, from));
     const auto here = static_cast<std::size_t>(from);
-    const Affine<Dual8> to_next = along_axis(vertices[here + 1] - vertices[here]) * placements[here + 1];
+    const Affine<Dual8> to_next = dual_along_axis(vertices[here + 1] - vertices[here]) * placements[here + 1];
     return moves_alone(lens.surfaces[here]) ? inverse(placements[here]) * to_next : to_next;
 }
 
@@ -192,8 +189,8 @@ Affine<Dual8> DualLens::last_axis(const LensSystem& lens) const {
 
 Affine<Dual8> DualLens::film(const LensSystem& lens) const {
     const SurfacePlacement& own = lens.film_placement;
-    const Affine<Dual8> on_axis = along_axis(film_distance) * frame_of(static_cast<Vec3<Dual8>>(own.decentre),
-                                                                       static_cast<Vec3<Dual8>>(own.tilt_deg));
+    const Affine<Dual8> on_axis = dual_along_axis(film_distance) * frame_of(static_cast<Vec3<Dual8>>(own.decentre),
+                                                                            static_cast<Vec3<Dual8>>(own.tilt_deg));
     Affine<Dual8> film = inverse(on_axis) * last_axis(lens);
     // If light arrives from behind the film, film_path_ends turns its frame about y by 180 degrees.
     const std::optional<Affine<double>> exit = film_path_ends(lens, LightDirection::to_film).exit;

@@ -12,7 +12,7 @@ namespace realcam {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoFocus = std::numeric_limits<double>::quiet_NaN();
 
 /// Ray bundle of the object point on the chief ray of the film's centre, through a lens of any kind. Rays are
 /// parametrised by their intersection with the plane perpendicular to the chief ray at the front surface (their entry),
@@ -104,7 +104,7 @@ double smallest_spot_position(const CentralBundle& bundle) {
             sum_x0_m += line.weight * (line.position[k] - mean.position[k] / mean.weight) * slope;
             sum_m_squared += line.weight * slope * slope;
         }
-    return sum_m_squared > 0 ? -sum_x0_m / sum_m_squared : kNone;
+    return sum_m_squared > 0 ? -sum_x0_m / sum_m_squared : kNoFocus;
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ double smallest_spot_position(const CentralBundle& bundle) {
 double focus_error(const LensSystem& lens, double focus_distance) {
     if (lens.is_rotational()) {
         const double object = focus_distance - lens.film_position();
-        return object < 0 ? kNone : best_focus_distance(lens, lens.wavelength_nm, object) - lens.film_distance;
+        return object < 0 ? kNoFocus : best_focus_distance(lens, lens.wavelength_nm, object) - lens.film_distance;
     }
     LensSystem round = lens;
     round.iris.blades = 0;
@@ -120,7 +120,7 @@ double focus_error(const LensSystem& lens, double focus_distance) {
     // z of the object plane in the camera frame.
     const double plane = camera_film_position(lens) - focus_distance;
     const double distance = (rays.chief.scene.z - plane) / rays.chief.scene_direction.z;
-    if (!(distance > 0)) return kNone;
+    if (!(distance > 0)) return kNoFocus;
     return smallest_spot_position({round, rays, 1 / distance}) - lens.film_distance;
 }
 

@@ -156,10 +156,6 @@ LensSystem with_element_tilted(const LensSystem& lens, int first, int last, cons
 
 namespace {
 
-Affine<double> translation(Vec3d offset) {
-    return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, offset};
-}
-
 /// Frame of the film's vertex on the last axis, before the film's own placement.
 Affine<double> film_on_axis(const LensSystem& lens) {
     return surface_frames(lens).last_axis * along_axis(lens.film_distance);
@@ -174,7 +170,7 @@ LensSystem with_lens_moved(const LensSystem& lens, const SurfacePlacement& move,
         throw InputError("the lens cannot be tilted or shifted: its first surface has a tilt or decentre of its own");
     const Affine<double> film = film_on_axis(lens) * lens.film_placement.frame();
     const Vec3d centre = film.origin - Vec3d{0, 0, pivot};
-    const Affine<double> motion = translation(centre) * move.frame() * translation(-centre);
+    const Affine<double> motion = Affine<double>{.origin = centre} * move.frame() * Affine<double>{.origin = -centre};
     front = SurfacePlacement::from_frame(motion * front.frame());
     // The film keeps its position: its placement compensates the motion of the last axis.
     moved.film_placement = SurfacePlacement::from_frame(inverse_motion(film_on_axis(moved)) * film);

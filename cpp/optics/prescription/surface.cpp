@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "../../math/hypotenuse.hpp"
 
@@ -62,8 +61,6 @@ double Surface::vertex_curvature() const {
 }
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct CosSin {
     double cos, sin;

@@ -9,7 +9,7 @@ namespace realcam {
 
 namespace {
 
-constexpr int kLanes = 16;  ///< rays that are traced together
+constexpr int kFanLanes = 16;  ///< rays that are traced together
 
 }  // namespace
 
@@ -42,7 +42,7 @@ FieldFan::FieldFan(const LensSystem& nominal, double wavelength_nm, const FieldP
     by_x_ = {(of_x.x * yy - of_x.y * xy) / determinant, (of_y.x * yy - of_y.y * xy) / determinant};
     by_y_ = {(of_x.y * xx - of_x.x * xy) / determinant, (of_y.y * xx - of_y.x * xy) / determinant};
     // The last lanes are filled with chief rays of weight 0.
-    while (entries_.size() % kLanes != 0) {
+    while (entries_.size() % kFanLanes != 0) {
         entries_.push_back(chief_);
         weights_.push_back(0);
     }
@@ -103,14 +103,14 @@ FieldFan::Traced FieldFan::trace_copy(const CopyPath::WavelengthView& copy, int 
     traced.chief = at_vertex(pair, 0, 1);
     if (!with_rays) return traced;
     traced.rays.reserve(entries_.size());
-    for (std::size_t first = 0; first < entries_.size(); first += kLanes) {
-        Vec2<double> entries[kLanes];
-        for (std::size_t i = 0; i < kLanes; ++i)
+    for (std::size_t first = 0; first < entries_.size(); first += kFanLanes) {
+        Vec2<double> entries[kFanLanes];
+        for (std::size_t i = 0; i < kFanLanes; ++i)
             entries[i] = {entries_[first + i].x + move.x, entries_[first + i].y + move.y};
-        LensRays<double, kLanes> rays;
-        start<kLanes>(copy, entries, rays);
+        LensRays<double, kFanLanes> rays;
+        start<kFanLanes>(copy, entries, rays);
         trace_lens(view, rays);
-        for (int i = 0; i < kLanes; ++i)
+        for (int i = 0; i < kFanLanes; ++i)
             if (const double weight = weights_[first + static_cast<std::size_t>(i)]; weight > 0)
                 traced.rays.push_back(at_vertex(rays, i, weight));
     }

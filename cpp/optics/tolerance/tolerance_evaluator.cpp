@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "../../math/hypotenuse.hpp"
 #include "../lens/paraxial.hpp"
@@ -57,7 +56,6 @@ LensSystem with_settings(const LensSystem& lens, const CopySettings& settings, c
                      Affine<double>{.origin = settings.element_shift});
     result.film_distance += settings.film_shift;
     for (ZoomPosition& position : result.zoom.positions) position.film_distance += settings.film_shift;
-    constexpr double kDegree = std::numbers::pi / 180;
     result.film_placement.tilt_deg.x += std::atan(settings.film_slope.y) / kDegree;
     result.film_placement.tilt_deg.y -= std::atan(settings.film_slope.x) / kDegree;
     return result;

@@ -34,14 +34,6 @@ Affine<double> drawn_map(BvhDraw& draw, bool mirrors) {
     return map;
 }
 
-std::shared_ptr<const Scene> scene_of(const Mesh& mesh, const Material& material = {}) {
-    Scene scene;
-    for (const Vec3f p : mesh.positions) scene.positions_m.push_back(static_cast<Vec3d>(p));
-    scene.triangles = mesh.triangles;
-    scene.materials = {material};
-    return std::make_shared<const Scene>(scene);
-}
-
 /// Instances that go, turn and stretch within the first second.
 Assembly moving_assembly(BvhDraw& draw) {
     Assembly assembly(scene_of(soup(300, 20, 2, 8)));

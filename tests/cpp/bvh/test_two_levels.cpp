@@ -15,14 +15,6 @@ using namespace realcam::test;
 
 namespace {
 
-std::shared_ptr<const Scene> scene_of(const Mesh& mesh) {
-    Scene scene;
-    for (const Vec3f p : mesh.positions) scene.positions_m.push_back(static_cast<Vec3d>(p));
-    scene.triangles = mesh.triangles;
-    scene.materials = {Material{}};
-    return std::make_shared<const Scene>(scene);
-}
-
 /// Turns about two axes, scales each axis otherwise, and mirrors now and then.
 Affine<double> drawn_place(BvhDraw& draw, float room) {
     Affine<double> map;

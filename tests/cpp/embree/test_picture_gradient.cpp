@@ -19,7 +19,7 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-constexpr double kErrors = 4.5;
+constexpr double kGradientErrors = 4.5;
 constexpr int kSeeds = 16;
 
 /// Numbers of a camera behind its variables, as PictureGradient orders them.
@@ -176,11 +176,11 @@ TEST_CASE("a picture of even light does not depend on the camera's pose: interio
     const Gradients found(gradient, inner_pixels(camera), 128, 64);
     for (std::size_t number = kRight; number <= kRoll; ++number) {
         CAPTURE(number);
-        CHECK(std::fabs(found.both[number].value) < kErrors * found.both[number].error + 1e-12);
+        CHECK(std::fabs(found.both[number].value) < kGradientErrors * found.both[number].error + 1e-12);
     }
     for (const std::size_t number : {std::size_t{kRight}, std::size_t{kUp}, std::size_t{kBackward}}) {
         CAPTURE(number);
-        CHECK(std::fabs(found.interior[number].value) > 2 * kErrors * found.interior[number].error);
+        CHECK(std::fabs(found.interior[number].value) > 2 * kGradientErrors * found.interior[number].error);
     }
     CHECK(gradient.unexplained_edges() == 0);
 }
@@ -210,9 +210,9 @@ TEST_CASE("translation of a camera in front of a plane whose radiance is a linea
     });
     const double per_mm = 1e-3 * kSlope;
     const Estimate wanted{per_mm * uniform.value, per_mm * uniform.error}, zero{0, 0};
-    CHECK(errors_between(found.both[kRight], wanted) < kErrors);
-    CHECK(errors_between(found.interior[kRight], wanted) > kErrors);
-    CHECK(errors_between(found.both[kUp], zero) < kErrors);
+    CHECK(errors_between(found.both[kRight], wanted) < kGradientErrors);
+    CHECK(errors_between(found.interior[kRight], wanted) > kGradientErrors);
+    CHECK(errors_between(found.both[kUp], zero) < kGradientErrors);
 }
 
 TEST_CASE("a knife edge in front of a thin lens, by pose, focus and stop") {
@@ -272,7 +272,7 @@ TEST_CASE("a knife edge in front of a thin lens, by pose, focus and stop") {
         CAPTURE(value.value);
         CAPTURE(value.error);
         CAPTURE(wanted);
-        CHECK(std::fabs(value.value - wanted) < kErrors * value.error + 1e-3 * std::fabs(wanted));
+        CHECK(std::fabs(value.value - wanted) < kGradientErrors * value.error + 1e-3 * std::fabs(wanted));
         CHECK(value.error < 0.1 * std::fabs(wanted));
     };
     check(found.both[1 + kRight], by_right);
@@ -300,7 +300,6 @@ TEST_CASE("derivatives of a picture with occlusion, defocus and vignetting equal
         bool needs_boundary = false;
     };
     // Steps of the rotations are 0.05 pixels: steps five times as large have an error of several standard errors.
-    const double kDegree = std::numbers::pi / 180;
     const Case cases[] = {
         {0, surface([](auto& s, double h) { s[0].curvature += h; }), 2e-5, 1},
         {1, surface([](auto& s, double h) { s[1].thickness += h; }), 0.02, 1},
@@ -327,8 +326,8 @@ TEST_CASE("derivatives of a picture with occlusion, defocus and vignetting equal
         Estimate wanted = difference(scene, camera, direct_light(), adjoint, one.change, one.step, 512);
         wanted.value /= one.unit;
         wanted.error /= one.unit;
-        CHECK(errors_between(found.both[one.number], wanted) < kErrors);
-        if (one.needs_boundary) CHECK(errors_between(found.interior[one.number], wanted) > kErrors);
+        CHECK(errors_between(found.both[one.number], wanted) < kGradientErrors);
+        if (one.needs_boundary) CHECK(errors_between(found.interior[one.number], wanted) > kGradientErrors);
     }
 }
 
@@ -345,7 +344,7 @@ TEST_CASE("derivatives of a picture with dispersion equal central differences") 
         Estimate wanted = difference(scene, camera, settings, adjoint, change, step, 96);
         wanted.value /= unit;
         wanted.error /= unit;
-        CHECK(errors_between(found.both[number], wanted) < kErrors);
+        CHECK(errors_between(found.both[number], wanted) < kGradientErrors);
     };
     check(0, [](Camera& c, double h) { c.lens.surfaces[0].curvature += h; }, 2e-5, 1);
     check(1, [](Camera& c, double h) { c.lens.film_distance += h; }, 0.02, 1);

@@ -12,7 +12,7 @@ using Nodes = std::vector<std::array<double, 2>>;
 namespace {
 
 constexpr int kColumns = 12, kRows = 7;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 double height(int column, int row) {
     return 1 + 2 * column - 3 * row;
@@ -24,7 +24,7 @@ Nodes plane(int first, int last) {
     for (int row = 0; row < kRows; ++row)
         for (int column = 0; column < kColumns; ++column) {
             const bool is_known = column >= first && column <= last;
-            nodes.push_back({is_known ? height(column, row) : kNaN, is_known ? -height(column, row) : kNaN});
+            nodes.push_back({is_known ? height(column, row) : kUnknown, is_known ? -height(column, row) : kUnknown});
         }
     return nodes;
 }

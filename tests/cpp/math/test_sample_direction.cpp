@@ -11,7 +11,7 @@ using namespace realcam::test;
 
 namespace {
 
-constexpr int kSamples = 1 << 18;
+constexpr int kDirectionSamples = 1 << 18;
 
 const Vec3f kNormals[] = {{0, 0, 1},
                           {0, 0, -1},
@@ -34,9 +34,9 @@ Bins on_disc(Sampler&& sampler, unsigned seed) {
         const Vec2f p{static_cast<float>(r * std::cos(angle)), static_cast<float>(r * std::sin(angle))};
         return static_cast<double>(disc_pdf(p)) * r * 2 * M_PI;
     };
-    bins.expect(density, kSamples, 1);
+    bins.expect(density, kDirectionSamples, 1);
     Uniform uniform(seed);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kDirectionSamples; ++i) {
         const Vec2f p = sampler(uniform.pair());
         const double x = static_cast<double>(p.x), y = static_cast<double>(p.y);
         bins.add(std::min(std::hypot(x, y), 1.0), euler_rotation(x, y));  // 2e-7 past the rim by rounding
@@ -54,9 +54,9 @@ Bins on_sphere(Sampler&& sampler, Pdf&& pdf, unsigned seed) {
         const Vec3d d{r * std::cos(angle), r * std::sin(angle), height};
         return static_cast<double>(pdf(static_cast<Vec3f>(d))) * 2 * M_PI;
     };
-    bins.expect(density, kSamples, 4);
+    bins.expect(density, kDirectionSamples, 4);
     Uniform uniform(seed);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kDirectionSamples; ++i) {
         const Vec3d d = static_cast<Vec3d>(sampler(uniform.pair()));
         bins.add(std::clamp(d.z, -1.0, 1.0), euler_rotation(d.x, d.y));
     }
@@ -78,9 +78,9 @@ Bins about_axis(Vec3f axis, float exponent, Sampler&& sampler, unsigned seed) {
         const Vec3d d = (r * std::cos(a)) * s + (r * std::sin(a)) * t + std::cos(angle) * n;
         return static_cast<double>(phong_pdf(axis, exponent, static_cast<Vec3f>(d))) * r * 2 * M_PI;
     };
-    bins.expect(density, kSamples, 4);
+    bins.expect(density, kDirectionSamples, 4);
     Uniform uniform(seed);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kDirectionSamples; ++i) {
         const Vec3d d = static_cast<Vec3d>(sampler(uniform.pair()));
         bins.add(2 * std::asin(std::min(0.5 * length(normalized(d) - n), 1.0)), euler_rotation(dot(d, s), dot(d, t)));
     }

@@ -9,14 +9,14 @@
 
 namespace realcam::test {
 
-struct Surface {
+struct NamedSurface {
     std::string name;
     Material material;
     bool is_front = true;  ///< seen from outside
 };
 
 /// The plane z = 0, with textures left out.
-inline SurfacePoint point_on(const Surface& surface) {
+inline SurfacePoint point_on(const NamedSurface& surface) {
     const Material& m = surface.material;
     SurfacePoint point{};
     point.normal = point.geometric_normal = {0, 0, 1};
@@ -39,13 +39,13 @@ inline Vec3f eye_at(double cosine) {
     return static_cast<Vec3f>(Vec3d{-std::sqrt(1 - cosine * cosine), 0, cosine});
 }
 
-inline Bsdf bsdf_of(const Surface& surface, Vec3f eye) {
+inline Bsdf bsdf_of(const NamedSurface& surface, Vec3f eye) {
     return make_bsdf<SceneKind::any>(point_on(surface), eye);
 }
 
 template <class Change>
-Surface phong(const std::string& name, Change&& change) {
-    Surface surface{name, {}};
+NamedSurface phong(const std::string& name, Change&& change) {
+    NamedSurface surface{name, {}};
     surface.material.diffuse = {0, 0, 0};
     change(surface.material);
     return surface;
@@ -53,8 +53,8 @@ Surface phong(const std::string& name, Change&& change) {
 
 /// White, with a dielectric's reflection, if `change` says nothing else.
 template <class Change>
-Surface metallic_roughness(const std::string& name, Change&& change) {
-    Surface surface{name, {}};
+NamedSurface metallic_roughness(const std::string& name, Change&& change) {
+    NamedSurface surface{name, {}};
     surface.material.model = MaterialModel::metallic_roughness;
     surface.material.diffuse = surface.material.specular = {1, 1, 1};
     change(surface.material);
@@ -62,7 +62,7 @@ Surface metallic_roughness(const std::string& name, Change&& change) {
 }
 
 /// Seen from inside.
-inline Surface from_behind(Surface surface) {
+inline NamedSurface from_behind(NamedSurface surface) {
     surface.name += ", from inside";
     surface.is_front = false;
     return surface;

@@ -42,13 +42,6 @@ std::string instanced(const Folder& folder, const std::string& attributes, const
     return folder.write("i.gltf", text);
 }
 
-Camera camera_with(const std::string& lens) {
-    Camera camera;
-    camera.lens = io::read_lens(lens);
-    camera.film = default_film(camera.lens, {}, {});
-    return camera;
-}
-
 std::string with_cameras(const Folder& folder, const std::string& nodes, const std::string& roots,
                          const std::string& cameras) {
     folder.write("tri.bin", triangle_bytes());
@@ -119,7 +112,9 @@ TEST_CASE("glTF: cameras stand where their nodes do, and the first is the view w
     CHECK(scene.cameras[0].vertical_field_rad == 0.5);
     CHECK_FALSE(scene.cameras[1].has_pose());
 
-    Camera camera = camera_with("double-gauss-50mm");
+    Camera camera;
+    camera.lens = io::read_lens("double-gauss-50mm");
+    camera.film = default_film(camera.lens, {}, {});
     CHECK(set_view(camera, scene, {})->name == "side");
     check_point(*entrance_pupil_position_m(camera), 16, 2, 0, 1e-6);
     check_point(normalized(camera.pose.look_at_m - camera.pose.position_m), -1, 0, 0);

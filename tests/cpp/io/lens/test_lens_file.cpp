@@ -54,7 +54,7 @@ std::string with_line(int number, const std::string& replacement) {
 }
 
 // Message of the error for a text, or "(no error)".
-std::string complaint(const std::string& text) {
+std::string file_complaint(const std::string& text) {
     return message_of<LensFileError>([&] { io::parse_lens(text, "probe.toml"); });
 }
 
@@ -64,7 +64,7 @@ std::string complaint_about_name(const std::string& name) {
 
 // Checks that the message is one line, begins with `place` and contains `part`.
 void check_complaint(const std::string& text, const std::string& place, const std::string& part) {
-    const std::string message = complaint(text);
+    const std::string message = file_complaint(text);
     CAPTURE(message);
     CHECK(message.rfind(place + ": ", 0) == 0);
     CHECK(contains(message, part));
@@ -87,7 +87,7 @@ TEST_CASE("the lens that the bad ones are made from is good") {
     // With the line ends of another system, and a mark at the start.
     std::string text = "\xEF\xBB\xBF";
     for (const char c : joined(kGoodLines)) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
-    CHECK(complaint(text) == "(no error)");
+    CHECK(file_complaint(text) == "(no error)");
 }
 
 TEST_CASE("bad numbers of a surface are named with file, line and surface") {
@@ -164,7 +164,7 @@ TEST_CASE("bad lenses are named with their file") {
                     "a second \"stop\", after surface 2; expected exactly one");
     check_complaint(with_line(3, "film_distance_mm = -5.0"), "probe.toml:3", "the film lies behind the last surface");
     // The film of an eye, or on a cover glass, touches the last surface.
-    CHECK(complaint(with_line(3, "film_distance_mm = 0.0")) == "(no error)");
+    CHECK(file_complaint(with_line(3, "film_distance_mm = 0.0")) == "(no error)");
     std::vector<std::string> diverging = kGoodLines;
     diverging[2] = "";
     diverging[5] = "radius_of_curvature_mm = -50.0";
@@ -191,7 +191,7 @@ TEST_CASE("bad lenses are named with their file") {
     for (const char* line :
          {"name = \"a\\u0000b\"", "name = \"a\\u001b[31m\"", "name = \"a\\u009bm\"", "name = \"a\\nb\""})
         check_complaint(with_line(2, line), "probe.toml:2", "without control characters");
-    CHECK(complaint(with_line(2, "name = \"Objektiv f\u00fcr 50 \u00b5m $\"")) == "(no error)");
+    CHECK(file_complaint(with_line(2, "name = \"Objektiv f\u00fcr 50 \u00b5m $\"")) == "(no error)");
     check_complaint(with_line(4, "title = \"a\\u0000b\""), "probe.toml:4", "one line of text");
     check_complaint("", "probe.toml:1", "is missing");
     check_complaint("format = 1\nname = \"x\"\n", "probe.toml:1", "the lens has no surfaces");
@@ -203,9 +203,9 @@ TEST_CASE("faces that cross are named with file, line and surface, and allowed w
     // The stop between them has no substance: the faces' sags at 8 mm are 0.644 and -0.536 mm.
     const std::string thin = with_line(7, "thickness_mm = 0.1");
     check_complaint(thin, "probe.toml:5: surface 1", "crosses surface 3, by 0.0799 mm at 8 mm from the axis");
-    CHECK(complaint(with_line(7, "thickness_mm = 0.2")) == "(no error)");
+    CHECK(file_complaint(with_line(7, "thickness_mm = 0.2")) == "(no error)");
     const std::string allowed = "allow_overlap = true\n" + thin;
-    CHECK(complaint(allowed) == "(no error)");
+    CHECK(file_complaint(allowed) == "(no error)");
     CHECK(io::parse_lens(allowed, "probe.toml").allow_overlap);
     CHECK(!io::parse_lens(joined(kGoodLines), "probe.toml").allow_overlap);
     check_complaint("allow_overlap = 1\n" + thin, "probe.toml:1", "must be true or false");
@@ -216,7 +216,7 @@ TEST_CASE("faces that cross are named with file, line and surface, and allowed w
     lines[2] = "film_distance_mm = 0.5";
     check_complaint(joined(lines), "probe.toml:3", "cuts through its last face");
     lines[2] = "film_distance_mm = 0.54";
-    CHECK(complaint(joined(lines)) == "(no error)");
+    CHECK(file_complaint(joined(lines)) == "(no error)");
 }
 
 TEST_CASE("text that is not TOML is named with file and line") {
@@ -225,8 +225,8 @@ TEST_CASE("text that is not TOML is named with file and line") {
     check_complaint(with_line(8, "material = 1.5\nmaterial = 1.6"), "probe.toml:9", "not valid TOML");
     check_complaint(with_line(7, "thickness_mm\u00e9 = 4.0"), "probe.toml:7", "not valid TOML");
     check_complaint(with_line(9, "allow_overlap = f"), "probe.toml:9", "not valid TOML");
-    CHECK(!contains(complaint(with_line(9, "allow_overlap = f")), "\n"));
-    CHECK(complaint(with_line(9, std::string(100000, 'x') + " = 1")).size() < 300);
+    CHECK(!contains(file_complaint(with_line(9, "allow_overlap = f")), "\n"));
+    CHECK(file_complaint(with_line(9, std::string(100000, 'x') + " = 1")).size() < 300);
     check_complaint(std::string("\x7f\x45LF\x02\x01\0\0\xff\xfe", 10), "probe.toml:1", "not valid TOML");
 }
 

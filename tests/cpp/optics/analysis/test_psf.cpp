@@ -17,7 +17,7 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-constexpr double kDegree = M_PI / 180, kAiryRing = 3.8317059702075123 / M_PI;
+constexpr double kAiryRing = 3.8317059702075123 / M_PI;
 
 /// By the f-number of the sine of its outermost ray.
 LensSystem paraboloid_of(double f, double f_number, double defocus = 0) {

@@ -10,25 +10,17 @@
 #include "io/lens/lens_text.hpp"
 #include "measurement.hpp"
 #include "optics/centred_lenses.hpp"
+#include "optics/coated_lens.hpp"
 #include "optics/coating/coated_surface.hpp"
 #include "optics/coating/fit_coatings.hpp"
 #include "optics/lens/lens_changes.hpp"
 #include "optics/prescription/coating.hpp"
-#include "optics/three_layers.hpp"
 #include "optics/trace/lens_dispersion.hpp"
 
 namespace {
 
 using namespace realcam;
 using namespace realcam::test;
-
-LensSystem coated(LensSystem lens, const Coating& coating) {
-    for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
-        if (is_face_in_air(lens, i)) lens.surfaces[i].coating = coating;
-    for (Surface& surface : lens.surfaces)
-        if (surface.type == SurfaceType::mirror) surface.coating = *named_coating("aluminium");
-    return lens;
-}
 
 struct Errors {
     double worst = 0;           ///< largest error at any angle

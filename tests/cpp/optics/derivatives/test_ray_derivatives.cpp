@@ -205,14 +205,14 @@ void check_lens(const LensSystem& lens, LightDirection way, const std::vector<Le
 
 const std::vector<Start> kFromScene = {
     {{0, 0, -10}, {0, 0, 1}}, {{3, -2, -10}, {0.1, 0.2, 1}}, {{-5, 1, -3}, {0.2, 0, 1}}};
-const std::vector<Start> kFromFilm = {{{0, 0, 50}, {0, 0, -1}}, {{8, -6, 60}, {-0.15, 0.1, -1}}};
+const std::vector<Start> kFilmStarts = {{{0, 0, 50}, {0, 0, -1}}, {{8, -6, 60}, {-0.15, 0.1, -1}}};
 
 }  // namespace
 
 TEST_CASE("derivatives of rays through spheres, conics and aspheres, from either side") {
     const LensSystem lens = mixed_lens();
     check_lens(lens, LightDirection::to_film, shape_variables(), kFromScene);
-    check_lens(lens, LightDirection::to_scene, shape_variables(), kFromFilm);
+    check_lens(lens, LightDirection::to_scene, shape_variables(), kFilmStarts);
 }
 
 TEST_CASE("derivatives by tilts and decentres of a lens that is still centred") {
@@ -221,7 +221,7 @@ TEST_CASE("derivatives by tilts and decentres of a lens that is still centred") 
     for (const int s : {0, 2, 3, 5})
         for (const LensVariable& v : tilts_and_decentres(s)) variables.push_back(v);
     check_lens(lens, LightDirection::to_film, variables, kFromScene);
-    check_lens(lens, LightDirection::to_scene, variables, kFromFilm);
+    check_lens(lens, LightDirection::to_scene, variables, kFilmStarts);
 }
 
 TEST_CASE("derivatives of a lens with tilts, decentres and a mirror") {

@@ -22,10 +22,10 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-constexpr double kTolerance = 1e-9;
+constexpr double kPathTolerance = 1e-9;
 
 /// A ray from the film: point (mm) and optical direction cosines towards the scene, in the film's frame.
-struct FilmRay {
+struct TestRay {
     double x, y, l, m;
 };
 
@@ -58,7 +58,7 @@ struct Tangents {
 constexpr int kLane = 3;  ///< the only lane with a tangent
 
 /// Starts a ray in all lanes, and its tangent in one; `w`: direction of the tangent in the film's direction cosines.
-TangentPath::Rays start_rays(const LensSystem& lens, const FilmRay& ray, Vec2d w) {
+TangentPath::Rays start_rays(const LensSystem& lens, const TestRay& ray, Vec2d w) {
     TangentPath::Rays rays;
     const double n = lens.indices(lens.wavelength_nm).back(), z = -std::sqrt(n * n - ray.l * ray.l - ray.m * ray.m);
     for (int i = 0; i < TangentPath::kLanes; ++i) {
@@ -72,7 +72,7 @@ TangentPath::Rays start_rays(const LensSystem& lens, const FilmRay& ray, Vec2d w
     return rays;
 }
 
-Tangents tangents_of(const TangentPath& path, const LensSystem& lens, const FilmRay& ray) {
+Tangents tangents_of(const TangentPath& path, const LensSystem& lens, const TestRay& ray) {
     Tangents result;
     for (int axis = 0; axis < 2; ++axis) {
         TangentPath::Rays rays = start_rays(lens, ray, {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0});
@@ -101,7 +101,7 @@ double component(Vec2d v, int axis) {
     return axis == 0 ? v.x : v.y;
 }
 
-void check_film_points(const LensSystem& lens, const std::vector<LensVariable>& variables, const FilmRay& film_ray) {
+void check_film_points(const LensSystem& lens, const std::vector<LensVariable>& variables, const TestRay& film_ray) {
     const TangentPath path(lens, lens.wavelength_nm, variables);
     const Tangents found = tangents_of(path, lens, film_ray);
     const DualPath truth(lens, LightDirection::to_film, lens.wavelength_nm, variables, ExitFrame::film, false);
@@ -127,7 +127,7 @@ void check_film_points(const LensSystem& lens, const std::vector<LensVariable>& 
             const auto by_pose = pose(axis);
             const double in_lens_frame =
                 found.by[axis].by_variable[v] + by_pose[0] * motion.x + by_pose[1] * motion.y + by_pose[2] * motion.z;
-            CHECK(std::fabs(in_lens_frame - component(wanted, axis)) < kTolerance * size);
+            CHECK(std::fabs(in_lens_frame - component(wanted, axis)) < kPathTolerance * size);
         }
         largest = std::max(largest, size);
     }
@@ -147,7 +147,7 @@ void check_film_points(const LensSystem& lens, const std::vector<LensVariable>& 
         });
         for (int axis = 0; axis < 2; ++axis)
             CHECK(std::fabs(pose(axis)[i] - component(wanted, axis)) <
-                  kTolerance * std::max(1.0, std::hypot(wanted.x, wanted.y)));
+                  kPathTolerance * std::max(1.0, std::hypot(wanted.x, wanted.y)));
     }
     // The film's own motions, in closed form: the point of the ray on a plane that is moved or rotated by e.
     const double slope[2] = {p.x / p.z, p.y / p.z}, at[2] = {film_ray.x, film_ray.y};
@@ -157,14 +157,14 @@ void check_film_points(const LensSystem& lens, const std::vector<LensVariable>& 
                                   at[1] * slope[axis],    -at[0] * slope[axis],   axis == 0 ? at[1] : -at[0]};
         for (std::size_t i = 0; i < 6; ++i) {
             CAPTURE(i);
-            CHECK(std::fabs(by[i] - wanted[i]) < kTolerance * std::max(1.0, std::fabs(wanted[i])));
+            CHECK(std::fabs(by[i] - wanted[i]) < kPathTolerance * std::max(1.0, std::fabs(wanted[i])));
         }
     }
 }
 
 /// Derivatives of the distance between a scene ray's point on the plane of a rim and the rim. `surface`: index in the
 /// lens.
-void check_rim(const LensSystem& lens, const std::vector<LensVariable>& variables, const FilmRay& film_ray,
+void check_rim(const LensSystem& lens, const std::vector<LensVariable>& variables, const TestRay& film_ray,
                int surface) {
     const TangentPath path(lens, lens.wavelength_nm, variables);
     const Tangents film = tangents_of(path, lens, film_ray);
@@ -205,7 +205,7 @@ void check_rim(const LensSystem& lens, const std::vector<LensVariable>& variable
         const Vec3d motion = film_motion(lens, variables[v]);
         const double in_lens_frame = found.by_variable[v] + found.by_pose[0] * motion.x + found.by_pose[1] * motion.y +
                                      found.by_pose[2] * motion.z;
-        CHECK(std::fabs(in_lens_frame - wanted) < kTolerance * std::max(1.0, std::fabs(wanted)));
+        CHECK(std::fabs(in_lens_frame - wanted) < kPathTolerance * std::max(1.0, std::fabs(wanted)));
     }
 }
 
@@ -275,12 +275,12 @@ void check_equal(const CameraDerivatives& a, const CameraDerivatives& b) {
     check(a.by_pose, b.by_pose);
 }
 
-const std::vector<FilmRay> kFilmRays = {{0, 0, 0.05, 0.02}, {5, -3, -0.2, 0.15}, {-6, 1, 0.25, 0.02}};
+const std::vector<TestRay> kFilmRays = {{0, 0, 0.05, 0.02}, {5, -3, -0.2, 0.15}, {-6, 1, 0.25, 0.02}};
 
 }  // namespace
 
 TEST_CASE("film points of fixed scene rays move by Hamiltonians: spheres, conics, aspheres") {
-    for (const FilmRay& ray : kFilmRays) check_film_points(lens_with_film(), all_variables(), ray);
+    for (const TestRay& ray : kFilmRays) check_film_points(lens_with_film(), all_variables(), ray);
 }
 
 TEST_CASE("film points of fixed scene rays through tilted and decentred surfaces and film") {
@@ -288,7 +288,7 @@ TEST_CASE("film points of fixed scene rays through tilted and decentred surfaces
     lens.surfaces[1].placement = {{0.3, -0.2, 0.1}, {3, -2, 10}, false};
     lens.surfaces[4].placement = {{0, 0.5, 0}, {0, 5, 0}, true};
     lens.film_placement = {{0.2, 0.1, 0}, {2, -1, 0}, false};
-    for (const FilmRay& ray : kFilmRays) check_film_points(lens, all_variables(), ray);
+    for (const TestRay& ray : kFilmRays) check_film_points(lens, all_variables(), ray);
 }
 
 TEST_CASE("film points of fixed scene rays through a dispersing lens, at three wavelengths") {
@@ -336,7 +336,7 @@ TEST_CASE("rims move at fixed scene rays: the stop, and rims of curved and of ti
         if (v.quantity != LensQuantity::aspheric && v.quantity != LensQuantity::conic) variables.push_back(v);
     for (const LensSystem& lens : {lens_with_film(), tilted})
         for (const int surface : {0, 1, 3, 4, 5})
-            for (const FilmRay& ray : kFilmRays) {
+            for (const TestRay& ray : kFilmRays) {
                 CAPTURE(surface);
                 check_rim(lens, variables, ray, surface);
             }
@@ -349,7 +349,7 @@ TEST_CASE("a ray that is traced alone, as on GPUs, has the derivatives of a bloc
     const std::vector<LensVariable> few = {{LensQuantity::thickness, 1}, {LensQuantity::index, 2}};
     for (const LensSystem& lens : {lens_with_film(), tilted})
         for (const std::vector<LensVariable>& variables : {few, all_variables()})
-            for (const FilmRay& film_ray : kFilmRays) {
+            for (const TestRay& film_ray : kFilmRays) {
                 const TangentPath path(lens, lens.wavelength_nm, variables);
                 const TangentPath::Rays start = start_rays(lens, film_ray, {0.3, -0.7});
                 TangentPath::Rays rays = start;

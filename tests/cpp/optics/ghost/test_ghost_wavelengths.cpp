@@ -13,32 +13,26 @@
 #include "io/lens/lens_text.hpp"
 #include "measurement.hpp"
 #include "optics/centred_lenses.hpp"
+#include "optics/coated_lens.hpp"
 #include "optics/coating/coated_surface.hpp"
 #include "optics/ghost/ghost_coatings.hpp"
 #include "optics/prescription/coating.hpp"
-#include "optics/three_layers.hpp"
 
 namespace {
 
 using namespace realcam;
 using namespace realcam::test;
 
-constexpr int kRays = 16;
+constexpr int kGhostRays = 16;
 constexpr std::size_t kMostPairs = 10;  ///< largest number of ghost pairs per lens, a regular subsample
 
-LensSystem coated(LensSystem lens, const Coating& coating) {
-    for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
-        if (is_face_in_air(lens, i)) lens.surfaces[i].coating = coating;
-    return lens;
-}
-
 /// A slanted bundle in front of the lens, or behind it.
-LensRays<float, kRays> bundle(const LensSystem& lens, const LensPath<float>& path, LightDirection direction) {
+LensRays<float, kGhostRays> bundle(const LensSystem& lens, const LensPath<float>& path, LightDirection direction) {
     const bool to_film = direction == LightDirection::to_film;
     const Surface& first = to_film ? lens.surfaces.front() : lens.surfaces.back();
     const auto reach = static_cast<float>(0.5 * std::min(first.clear_semi_diameter, lens.stop_semi_diameter));
-    LensRays<float, kRays> rays;
-    for (int i = 0; i < kRays; ++i) {
+    LensRays<float, kGhostRays> rays;
+    for (int i = 0; i < kGhostRays; ++i) {
         const float x = 0.5f * static_cast<float>(i % 4) - 0.75f, y = 0.5f * static_cast<float>(i / 4) - 0.75f;
         const auto index = static_cast<float>(path.entry_index);
         const Vec3f towards = normalized(Vec3f{0.02f, 0.05f, to_film ? 1.0f : -1.0f});
@@ -84,7 +78,7 @@ std::optional<Passed> ghosts_of(const LensSystem& lens, double wavelength_nm, Wa
     made_for_it.wavelength_nm = wavelength_nm;
     const Crossings<kGhostSpectrumTerms> many(lens, range, fitted_nm);
     const Crossings<kOneWavelengthTerms> one(made_for_it, {wavelength_nm, wavelength_nm}, {wavelength_nm});
-    float variable[kRays];
+    float variable[kGhostRays];
     for (float& of_ray : variable) of_ray = variable_over(range).at(static_cast<float>(wavelength_nm));
     Passed passed;
     const std::vector<GhostPair> pairs = ghost_pairs(lens);
@@ -97,14 +91,15 @@ std::optional<Passed> ghosts_of(const LensSystem& lens, double wavelength_nm, Wa
             const auto coatings_of_one = one.along(met, one.coatings);
             const LensPath<float> path(lens, way, direction, lens.wavelength_nm);
             const LensPath<float> path_of_one(made_for_it, way, direction, wavelength_nm);
-            LensRays<float, kRays> rays = bundle(lens, path, direction);
-            LensRays<float, kRays> rays_of_one = bundle(lens, path_of_one, direction);
-            PassedPower<kRays> power, power_of_one;
+            LensRays<float, kGhostRays> rays = bundle(lens, path, direction);
+            LensRays<float, kGhostRays> rays_of_one = bundle(lens, path_of_one, direction);
+            PassedPower<kGhostRays> power, power_of_one;
             trace_lens(path.view(), rays, NoRecord{},
-                       GhostMedia<kGhostSpectrumTerms, kRays>{indices.data(), coatings.data(), variable, power});
-            trace_lens(path_of_one.view(), rays_of_one, NoRecord{},
-                       GhostMedia<kOneWavelengthTerms, kRays>{nullptr, coatings_of_one.data(), nullptr, power_of_one});
-            for (int i = 0; i < kRays; ++i) {
+                       GhostMedia<kGhostSpectrumTerms, kGhostRays>{indices.data(), coatings.data(), variable, power});
+            trace_lens(
+                path_of_one.view(), rays_of_one, NoRecord{},
+                GhostMedia<kOneWavelengthTerms, kGhostRays>{nullptr, coatings_of_one.data(), nullptr, power_of_one});
+            for (int i = 0; i < kGhostRays; ++i) {
                 if (rays.status[i] != 0 || rays_of_one.status[i] != 0) continue;
                 passed.of_many += static_cast<double>(power.of_unpolarised(i));
                 passed.of_one += static_cast<double>(power_of_one.of_unpolarised(i));

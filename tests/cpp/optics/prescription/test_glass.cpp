@@ -17,7 +17,7 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-std::string complaint(const std::string& name) {
+std::string glass_complaint(const std::string& name) {
     return message_of([&] { io::catalogue_glass(name); });
 }
 
@@ -94,16 +94,16 @@ TEST_CASE("a name that several makers use must say which; each has its own index
     CHECK(io::catalogue_glass("schott:F4").index(kLineD_nm) == about(1.616592, 0.5e-6));
     // CDGM's is a fit of its power series, within 5e-6 as the catalogue states.
     CHECK(std::fabs(io::catalogue_glass("cdgm:F4").index(kLineD_nm) - 1.620047) < 5.5e-6);
-    const std::string message = complaint("F4");
+    const std::string message = glass_complaint("F4");
     CAPTURE(message);
     CHECK(contains(message, "several catalogues"));
     CHECK(contains(message, "\"schott:F4\""));
     CHECK(contains(message, "\"cdgm:F4\""));
-    CHECK(contains(complaint("N-BK8"), "did you mean"));
-    CHECK(contains(complaint("N-BK8"), "\"N-BK7\""));
-    CHECK(contains(complaint("zeiss:N-BK7"), "unknown glass \"zeiss:N-BK7\""));
-    CHECK(contains(complaint(""), "unknown glass"));
-    CHECK(contains(complaint(":"), "unknown glass"));
+    CHECK(contains(glass_complaint("N-BK8"), "did you mean"));
+    CHECK(contains(glass_complaint("N-BK8"), "\"N-BK7\""));
+    CHECK(contains(glass_complaint("zeiss:N-BK7"), "unknown glass \"zeiss:N-BK7\""));
+    CHECK(contains(glass_complaint(""), "unknown glass"));
+    CHECK(contains(glass_complaint(":"), "unknown glass"));
 }
 
 TEST_CASE("every glass of the catalogue is a glass, with normal dispersion over the visible") {

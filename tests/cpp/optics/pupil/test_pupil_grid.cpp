@@ -12,7 +12,7 @@ using namespace realcam::test;
 
 namespace {
 
-constexpr int kSamples = 1 << 16;
+constexpr int kGridSamples = 1 << 16;
 
 struct GridCase {
     std::string lens;
@@ -40,7 +40,7 @@ Traced trace_samples(const LensSystem& lens, Sample&& sample) {
     constexpr int kBlock = 256;
     const LensPath<float> path(lens, LightDirection::to_scene, lens.wavelength_nm);
     Traced traced;
-    for (std::uint32_t first = 0; first < kSamples; first += kBlock) {
+    for (std::uint32_t first = 0; first < kGridSamples; first += kBlock) {
         LensRays<float, kBlock> rays;
         float weights[kBlock];
         for (int i = 0; i < kBlock; ++i) {
@@ -58,14 +58,14 @@ Traced trace_samples(const LensSystem& lens, Sample&& sample) {
         trace_lens(path.view(), rays);
         for (int i = 0; i < kBlock; ++i) {
             if (rays.status[i] != 0) continue;
-            traced.irradiance += static_cast<double>(weights[i]) / kSamples;
+            traced.irradiance += static_cast<double>(weights[i]) / kGridSamples;
             ++traced.passed;
         }
     }
     return traced;
 }
 
-LensSystem lens_of(const GridCase& state) {
+LensSystem lens_in_state(const GridCase& state) {
     const LensSystem lens = io::read_lens(state.lens);
     return state.f_number > 0 ? stopped_down(lens, state.f_number) : lens;
 }
@@ -80,7 +80,7 @@ TEST_CASE("the pupil over the film gives the irradiance that the radial table gi
     for (const GridCase& state : kCases) {
         CAPTURE(state.lens);
         CAPTURE(state.f_number);
-        const LensSystem lens = lens_of(state);
+        const LensSystem lens = lens_in_state(state);
         const PupilGrid grid(lens, film_of(lens), state.planes);
         REQUIRE(grid.is_lit());
         const Pupil rows(lens, half_diagonal(lens));
@@ -100,7 +100,7 @@ TEST_CASE("the pupil over the film gives the irradiance that the radial table gi
 TEST_CASE("no ray that passes lies outside the pupil over the film") {
     for (const GridCase& state : kCases) {
         CAPTURE(state.lens);
-        const LensSystem lens = lens_of(state);
+        const LensSystem lens = lens_in_state(state);
         const PupilGrid grid(lens, film_of(lens), state.planes);
         const PupilGridView view = grid.view();
         int strays = 0;
@@ -116,14 +116,14 @@ TEST_CASE("no ray that passes lies outside the pupil over the film") {
         });
         strays = all.passed;
         // The table is made of 1e5 rays; slivers of 1e-4 of the region's area may fall between them.
-        CHECK(strays <= 1e-4 * kSamples / (1.6 * 1.6));
-        CHECK(all.sampled > kSamples / 4);
+        CHECK(strays <= 1e-4 * kGridSamples / (1.6 * 1.6));
+        CHECK(all.sampled > kGridSamples / 4);
     }
 }
 
 TEST_CASE("the weight of a sample of the pupil over the film is one over its density") {
     for (const GridCase& state : kCases) {
-        const LensSystem lens = lens_of(state);
+        const LensSystem lens = lens_in_state(state);
         const PupilGrid grid(lens, film_of(lens), state.planes);
         const PupilGridView view = grid.view();
         int apart = 0;
@@ -134,7 +134,7 @@ TEST_CASE("the weight of a sample of the pupil over the film is one over its den
             return PupilSample{drawn.direction, 0};
         });
         // Rounding moves some of those on an edge between two sectors into the other one, or out.
-        CHECK(apart <= 1e-4 * kSamples);
+        CHECK(apart <= 1e-4 * kGridSamples);
     }
 }
 

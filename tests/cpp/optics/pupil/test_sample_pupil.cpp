@@ -12,7 +12,7 @@ using namespace realcam::test;
 
 namespace {
 
-constexpr int kSamples = 1 << 18, kSide = 20;
+constexpr int kPupilSamples = 1 << 18, kSide = 20;
 
 struct FilmPoint {
     std::string lens;
@@ -44,9 +44,9 @@ Bins in_direction_cosines(const PupilView& pupil, float x, float y, Sampler&& sa
     // The density jumps at the sectors' edges: the rule's error in a bin that an edge cuts is 1e-3.
     bins.expect(
         [&](double a, double b) { return pupil_pdf(pupil, x, y, static_cast<float>(a), static_cast<float>(b)); },
-        kSamples, 10);
+        kPupilSamples, 10);
     Uniform uniform(seed);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kPupilSamples; ++i) {
         const Vec3f d = sampler(uniform.pair());
         bins.add(static_cast<double>(d.x), static_cast<double>(d.y));
     }

@@ -17,7 +17,7 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-constexpr double kIndex = 1.5, kDegree = std::numbers::pi / 180;
+constexpr double kPrismIndex = 1.5;
 
 LensSystem with_perturbation(const LensSystem& lens, Perturbation error, double size) {
     return perturbed(lens, {error}, {&size, 1});
@@ -25,8 +25,8 @@ LensSystem with_perturbation(const LensSystem& lens, Perturbation error, double 
 
 /// A stop, and a glass plate 4 mm thick.
 LensSystem plate() {
-    LensSystem lens =
-        lens_of({stop_plane(2, 5), refracting(0, 4, Glass::constant(kIndex), 10), refracting(0, 0, Glass::air(), 10)});
+    LensSystem lens = lens_of(
+        {stop_plane(2, 5), refracting(0, 4, Glass::constant(kPrismIndex), 10), refracting(0, 0, Glass::air(), 10)});
     lens.film_distance = 50;
     return lens;
 }
@@ -40,7 +40,7 @@ TracedRay axial_ray(const LensSystem& lens) {
 
 /// By how much the rear face of a prism of this angle turns light that meets its front face at a right angle.
 double prism_deviation(double angle) {
-    return std::asin(kIndex * std::sin(angle)) - angle;
+    return std::asin(kPrismIndex * std::sin(angle)) - angle;
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ TEST_CASE("errors of no size leave the lens as it was drawn") {
 }
 
 TEST_CASE("an error of the radius is one of mm, of percent, or of fringes of the sag at the rim") {
-    const LensSystem lens = lens_of({stop_plane(1, 5), refracting(80, 0, Glass::constant(kIndex), 10)});
+    const LensSystem lens = lens_of({stop_plane(1, 5), refracting(80, 0, Glass::constant(kPrismIndex), 10)});
     CHECK(1 / with_perturbation(lens, {PerturbationKind::radius, 1, 1}, -0.7).surfaces[1].curvature ==
           about(79.3, 1e-14));
     CHECK(1 / with_perturbation(lens, {PerturbationKind::radius_percent, 1, 1}, 2).surfaces[1].curvature ==
@@ -88,7 +88,7 @@ TEST_CASE("an error of the thickness moves what is behind, in each zoom position
 }
 
 TEST_CASE("irregularity is as many half wavelengths from valley to peak as asked for") {
-    const LensSystem lens = lens_of({stop_plane(1, 5), refracting(80, 0, Glass::constant(kIndex), 10)});
+    const LensSystem lens = lens_of({stop_plane(1, 5), refracting(80, 0, Glass::constant(kPrismIndex), 10)});
     for (const auto& [kind, peak] :
          {std::pair(PerturbationKind::irregularity_0, 0.0), {PerturbationKind::irregularity_45, 45.0}}) {
         const LensSystem copy = with_perturbation(lens, {kind, 1, 1}, 3);
@@ -115,15 +115,16 @@ TEST_CASE("a wedge turns light as a prism does") {
         CHECK(about_y.direction.y == 0);
         CHECK(std::fabs(about_y.direction.x) == about(std::sin(deviation), 1e-11));
         // (n - 1) times the wedge, and (n + 1) n / 6 of its square more.
-        const double third = (kIndex + 1) * kIndex / 6 * std::pow(angle_deg * kDegree, 2);
-        CHECK(deviation / (kIndex - 1) == about(angle_deg * kDegree * (1 + third), 2 * third * third + 1e-12));
+        const double third = (kPrismIndex + 1) * kPrismIndex / 6 * std::pow(angle_deg * kDegree, 2);
+        CHECK(deviation / (kPrismIndex - 1) == about(angle_deg * kDegree * (1 + third), 2 * third * third + 1e-12));
     }
 }
 
 TEST_CASE("a plate that is tilted moves light aside, and one off the axis does nothing") {
     const double tilt_deg = 12, sine = std::sin(tilt_deg * kDegree);
     const TracedRay tilted = axial_ray(with_perturbation(plate(), {PerturbationKind::element_tilt_x, 1, 2}, tilt_deg));
-    const double aside = 4 * sine * (1 - std::cos(tilt_deg * kDegree) / std::sqrt(kIndex * kIndex - sine * sine));
+    const double aside =
+        4 * sine * (1 - std::cos(tilt_deg * kDegree) / std::sqrt(kPrismIndex * kPrismIndex - sine * sine));
     CHECK(std::fabs(tilted.at(50).y) == about(aside, 1e-12));
     CHECK(std::hypot(tilted.direction.x, tilted.direction.y) < 1e-15);
     const TracedRay moved = axial_ray(with_perturbation(plate(), {PerturbationKind::element_decentre_y, 1, 2}, 3));

@@ -19,17 +19,17 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-constexpr double kIndex = 1.5, kRadius = 20, kRim = 1.5;
-constexpr double kFocus = kIndex * kRadius / (kIndex - 1);  ///< focus of the surface, behind its vertex
+constexpr double kLensIndex = 1.5, kRadius = 20, kLensRim = 1.5;
+constexpr double kFocus = kLensIndex * kRadius / (kLensIndex - 1);  ///< focus of the surface, behind its vertex
 
-constexpr double kSlope = kRim / kFocus;  ///< approximate slope of the rays from the rim
+constexpr double kSlope = kLensRim / kFocus;  ///< approximate slope of the rays from the rim
 
 /// A stop on an ellipsoid of glass with k = -1 / n^2, which images infinity perfectly on the axis, at f/20 in glass.
 /// The film is in the glass, `defocus` behind the focus.
 LensSystem perfect(double defocus = 0) {
-    Surface ellipsoid = refracting(kRadius, 0, Glass::constant(kIndex), 2 * kRim);
-    ellipsoid.conic = -1 / (kIndex * kIndex);
-    LensSystem lens = lens_of({stop_plane(0, kRim), ellipsoid});
+    Surface ellipsoid = refracting(kRadius, 0, Glass::constant(kLensIndex), 2 * kLensRim);
+    ellipsoid.conic = -1 / (kLensIndex * kLensIndex);
+    LensSystem lens = lens_of({stop_plane(0, kLensRim), ellipsoid});
     lens.film_distance = kFocus + defocus;
     return lens;
 }
@@ -73,10 +73,10 @@ TEST_CASE("a perfect image has the contrast that diffraction leaves, and no spot
     CHECK(found.fields[0].rms_spot < 1e-12);
     CHECK(found.fields[0].light == about(1, 1e-14));
     CHECK(found.fields[0].distortion == 0);
-    CHECK(found.focal_length == about(kFocus / kIndex, 1e-12));  // 1 / power: the image lies in glass
+    CHECK(found.focal_length == about(kFocus / kLensIndex, 1e-12));  // 1 / power: the image lies in glass
     // At the rim n sin u = n r / sqrt(r^2 + l^2); the disc is even in that to its square.
-    const double along = kFocus - perfect().surfaces[1].sag(kRim);
-    const double aperture = kIndex * kRim / std::hypot(kRim, along);
+    const double along = kFocus - perfect().surfaces[1].sag(kLensRim);
+    const double aperture = kLensIndex * kLensRim / std::hypot(kLensRim, along);
     std::size_t i = 0;
     for (int direction = 0; direction < 2; ++direction)
         for (const double frequency : {10.0, 40.0}) {
@@ -90,7 +90,7 @@ TEST_CASE("out of focus, the spot and the contrast of rays are those of an even 
     const double defocus = 0.4;
     const CopyFigures sharp = ToleranceEvaluator(perfect(), one_colour({{0, 0}}))(perfect());
     const CopyFigures blurred = ToleranceEvaluator(perfect(defocus), one_colour({{0, 0}}))(perfect(defocus));
-    const double slope = kRim / (kFocus - perfect().surfaces[1].sag(kRim));
+    const double slope = kLensRim / (kFocus - perfect().surfaces[1].sag(kLensRim));
     CHECK(blurred.fields[0].rms_spot == about(defocus * slope / std::sqrt(2), slope * slope));
     for (std::size_t i = 0; i < 2; ++i) {
         const double x = 2 * std::numbers::pi * (i == 0 ? 10 : 40) * defocus * slope;
@@ -120,23 +120,23 @@ TEST_CASE("a copy with another radius is refocused to its own focus") {
     const ToleranceEvaluator judge(perfect(), one_colour({{0, 0}}, {.refocus = true}));
     const double size = 0.5;
     const CopyFigures found = judge(perturbed(perfect(), {{PerturbationKind::radius, 1, 1}}, {&size, 1}));
-    CHECK(found.settings.film_shift == about(kIndex * size / (kIndex - 1), 1e-9));
-    CHECK(found.focal_length == about(kFocus / kIndex + size / (kIndex - 1), 1e-7));
-    CHECK(found.fields[0].rms_spot < 1e-7 * kIndex * size / (kIndex - 1) * kSlope);
+    CHECK(found.settings.film_shift == about(kLensIndex * size / (kLensIndex - 1), 1e-9));
+    CHECK(found.focal_length == about(kFocus / kLensIndex + size / (kLensIndex - 1), 1e-7));
+    CHECK(found.fields[0].rms_spot < 1e-7 * kLensIndex * size / (kLensIndex - 1) * kSlope);
     // The film that was set is that of a lens that can be had.
     const LensSystem set = with_settings(perturbed(perfect(), {{PerturbationKind::radius, 1, 1}}, {&size, 1}),
                                          found.settings, {.refocus = true});
-    CHECK(set.film_distance == about(kIndex * (kRadius + size) / (kIndex - 1), 1e-9));
+    CHECK(set.film_distance == about(kLensIndex * (kRadius + size) / (kLensIndex - 1), 1e-9));
 }
 
 TEST_CASE("a chief ray through the vertex is refracted there, which is all of the distortion") {
     const double angle = 0.2;
     const CopyFigures found = ToleranceEvaluator(perfect(), one_colour({{0, angle}, {angle, 0}}))(perfect());
-    const double inside = std::asin(std::sin(angle) / kIndex);
+    const double inside = std::asin(std::sin(angle) / kLensIndex);
     for (const FieldFigures& field : found.fields) {
         CHECK(std::hypot(field.at.x, field.at.y) == about(kFocus * std::tan(inside), 1e-9));
         // Near the axis the picture's scale is 1 / n of the angle, to 1e-6 of it at 1 mrad.
-        CHECK(field.distortion == about(kIndex * std::tan(inside) / std::tan(angle) - 1, 1e-4));
+        CHECK(field.distortion == about(kLensIndex * std::tan(inside) / std::tan(angle) - 1, 1e-4));
     }
     CHECK(found.fields[0].at.y > 0);
     CHECK(found.fields[1].at.x > 0);

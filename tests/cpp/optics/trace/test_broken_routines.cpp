@@ -15,7 +15,7 @@ using namespace realcam::test;
 
 constexpr double kUlp = 0x1p-23;
 
-Vec3f in_float32(Vec3d v) {
+Vec3f float32_of(Vec3d v) {
     return static_cast<Vec3f>(v);
 }
 
@@ -42,8 +42,8 @@ double worst_off_surface(const Intersection& meet, double least_radius, double m
     for (int i = 0; i < 500; ++i) {
         const double radius = std::exp(random.between(std::log(least_radius), std::log(most_radius)));
         const Surface surface = refracting(radius, 0, Glass::constant(1.7), 20);
-        const Vec3f o = in_float32({random.between(-20, 20), random.between(-20, 20), -40});
-        const Vec3f d = in_float32(normalized(Vec3d{random.between(-0.3, 0.3), random.between(-0.3, 0.3), 1}));
+        const Vec3f o = float32_of({random.between(-20, 20), random.between(-20, 20), -40});
+        const Vec3f d = float32_of(normalized(Vec3d{random.between(-0.3, 0.3), random.between(-0.3, 0.3), 1}));
         const float t = meet(o, d, static_cast<float>(radius));
         const Vec3f at = o + t * d;
         const double off =
@@ -74,8 +74,8 @@ TEST_CASE("Newton's method without a bracket takes points that are not on the su
         const LensPath<float> path(lens_of({surface}), LightDirection::to_film, kLineD_nm);
         const SurfaceView<float> step = path.view().surfaces[0];
         for (int i = 0; i < 20; ++i) {
-            const Vec3f o = in_float32({random.between(-5, 5), random.between(-5, 5), -10});
-            const Vec3f d = in_float32(normalized(Vec3d{random.between(-1, 1), random.between(-1, 1), 1}));
+            const Vec3f o = float32_of({random.between(-5, 5), random.between(-5, 5), -10});
+            const Vec3f d = float32_of(normalized(Vec3d{random.between(-1, 1), random.between(-1, 1), 1}));
             float t = -o.z / d.z;
             for (int k = 0; k < 20; ++k) {
                 const Vec3f at = o + t * d;
@@ -110,10 +110,10 @@ TEST_CASE("a refraction that takes the ray's length from the glass table blurs a
     double worst_um = 0;
     for (int i = 0; i < 20000; ++i) {
         const Vec3d film = point_on_film(lens, random), aim = point_on_last_surface(lens, random);
-        Vec3f o = in_float32({film.x, film.y, lens.film_distance});
+        Vec3f o = float32_of({film.x, film.y, lens.film_distance});
         const Vec3d start{static_cast<double>(o.x), static_cast<double>(o.y),
                           lens.last_vertex() + static_cast<double>(o.z)};
-        Vec3f p = in_float32(normalized(aim - start));
+        Vec3f p = float32_of(normalized(aim - start));
         bool passes = true;
         for (int k = 0; k < path.view().count && passes; ++k) {
             const SurfaceView<float>& step = path.view().surfaces[k];

@@ -101,7 +101,7 @@ void add_rays(const Surface& surface, Random& random, int count, RayBatch& rays)
     }
 }
 
-struct Worst {
+struct WorstRay {
     BackwardError error;
     double decision = 0;  ///< largest distance from an edge of a ray on which backend and oracle disagree
     long compared = 0;
@@ -145,7 +145,7 @@ TEST_CASE("hard surfaces: points lie on the ray and on the surface, and rays lea
     for (const HardCase& hard : hard_cases()) {
         Random random(17);
         const auto backends = trace_backends();
-        std::vector<Worst> worst(backends.size());
+        std::vector<WorstRay> worst(backends.size());
         for (int s = 0; s < kSurfaces; ++s) {
             const Surface surface = hard.make(random);
             const LensSystem lens = lens_of({surface});
@@ -159,7 +159,7 @@ TEST_CASE("hard surfaces: points lie on the ray and on the surface, and rays lea
                     verdict(surface, shape, exact(rays.origins[i]), normalized(exact(rays.directions[i]))));
             for (std::size_t b = 0; b < backends.size(); ++b) {
                 const BatchResult out = backends[b](lens, LightDirection::to_film, rays);
-                Worst& w = worst[b];
+                WorstRay& w = worst[b];
                 for (std::size_t i = 0; i < rays.size(); ++i) {
                     CAPTURE(hard.what);
                     CAPTURE(s);
@@ -173,7 +173,7 @@ TEST_CASE("hard surfaces: points lie on the ray and on the surface, and rays lea
             }
         }
         for (std::size_t b = 0; b < backends.size(); ++b) {
-            const Worst& w = worst[b];
+            const WorstRay& w = worst[b];
             CHECK(w.compared > kSurfaces * kRays / 3);
             const std::string tried = std::to_string(w.compared) + " rays";
             const auto line = [&](const std::string& what, double value, double most, const char* unit) {

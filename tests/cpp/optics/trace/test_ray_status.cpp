@@ -14,8 +14,6 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 RayStatus status_without_record(const LensSystem& lens, Vec3d origin, Vec3d direction) {
     const LensPath<float> path(lens, LightDirection::to_film, lens.wavelength_nm);
     LensRays<float, 1> ray;

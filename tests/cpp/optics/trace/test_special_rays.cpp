@@ -15,9 +15,8 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kIndex = 1.7;
+constexpr double kGlassIndex = 1.7;
 
 Vec3d in_float32(Vec3d v) {
     return static_cast<Vec3d>(static_cast<Vec3f>(v));
@@ -27,7 +26,7 @@ Vec3d direction(double angle, double azimuth) {
 }
 
 std::vector<Surface> shapes() {
-    const Glass glass = Glass::constant(kIndex);
+    const Glass glass = Glass::constant(kGlassIndex);
     std::vector<Surface> list = {refracting(0, 0, glass, 15), refracting(1e9, 0, glass, 15),
                                  refracting(20, 0, glass, 15), refracting(-20, 0, glass, 15),
                                  refracting(20, 0, glass, 20)};
@@ -51,7 +50,7 @@ BackwardError worst_of(const TraceBackend& trace, const Surface& surface, const 
         CAPTURE(out.status[i]);
         REQUIRE(out.passed(i));
         worst.include(backward_error(surface, rays.origins[i], rays.directions[i], out.origins[i], out.directions[i], 1,
-                                     kIndex, trace.epsilon()));
+                                     kGlassIndex, trace.epsilon()));
     }
     return worst;
 }
@@ -140,7 +139,7 @@ TEST_CASE("rays that run backwards do not pass") {
 }
 
 TEST_CASE("tangents of a sphere: hit or missed as in 50 digits, but for the last roundings") {
-    const Surface surface = refracting(20, 0, Glass::constant(kIndex), 20);
+    const Surface surface = refracting(20, 0, Glass::constant(kGlassIndex), 20);
     RayBatch rays;
     // At heights around the hemisphere's 20 mm: by one part in 10^0.25 ... 10^17, on both sides.
     for (int i = 1; i <= 68; ++i)
@@ -160,7 +159,7 @@ TEST_CASE("tangents of a sphere: hit or missed as in 50 digits, but for the last
                     .has_value();
             if (out.passed(i))
                 worst.include(backward_error(surface, rays.origins[i], rays.directions[i], out.origins[i],
-                                             out.directions[i], 1, kIndex, trace.epsilon()));
+                                             out.directions[i], 1, kGlassIndex, trace.epsilon()));
             if (meets != out.passed(i)) amiss = std::max(amiss, std::fabs(static_cast<double>(discriminant)));
         }
         hold_errors(trace, "tangent to a sphere", rays.size(), worst);
@@ -180,18 +179,18 @@ TEST_CASE("grazing rays, to 89.9999 degrees and beyond, obey Snell's law") {
     for (const TraceBackend& trace : trace_backends()) {
         BackwardError worst;
         for (const double radius : {0.0, 1e6, -1e6})
-            worst.include(worst_of(trace, refracting(radius, 0, Glass::constant(kIndex), 30), rays));
+            worst.include(worst_of(trace, refracting(radius, 0, Glass::constant(kGlassIndex), 30), rays));
         hold_errors(trace, "grazing at 85 to 89.999999 degrees", 3 * rays.size(), worst);
     }
 }
 
 TEST_CASE("the critical angle: reflected or refracted as in 50 digits, but for the last roundings") {
     // Light to the scene starts in glass.
-    const LensSystem lens = lens_of({refracting(0, 0, Glass::constant(kIndex), 1000)});
+    const LensSystem lens = lens_of({refracting(0, 0, Glass::constant(kGlassIndex), 1000)});
     RayBatch rays;
     for (int i = 0; i <= 68; ++i)
         for (const double side : {-1.0, 1.0}) {
-            const double sine = (1 + side * std::pow(10, -i / 4.0) * 0.5) / kIndex;
+            const double sine = (1 + side * std::pow(10, -i / 4.0) * 0.5) / kGlassIndex;
             if (sine < 1) rays.add({0, 0, 1}, in_float32({sine, 0, -std::sqrt(1 - sine * sine)}));
         }
     for (const TraceBackend& trace : trace_backends()) {
@@ -199,7 +198,7 @@ TEST_CASE("the critical angle: reflected or refracted as in 50 digits, but for t
         double amiss = 0, snell = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const RealVector d = normalized(exact(rays.directions[i]));
-            const Real sine = Real(kIndex) * d.x;
+            const Real sine = Real(kGlassIndex) * d.x;
             const bool reflected = out.status[i] == static_cast<int>(RayStatus::total_internal_reflection);
             REQUIRE((reflected || out.passed(i)));
             if (reflected != (sine > 1)) amiss = std::max(amiss, std::fabs(static_cast<double>(sine - 1)));
@@ -334,7 +333,7 @@ TEST_CASE("a backward ray on the axis does not meet the far end of a nearly flat
     int compared = 0;
     for (const double radius : {1e3, 1e7, 1e9, -1e9})
         for (const double bend : {0.0, 1e-16, -1e-16, 1e-9, -1e-9, 1e-7}) {
-            Surface surface = refracting(radius, 1, Glass::constant(kIndex), 15);
+            Surface surface = refracting(radius, 1, Glass::constant(kGlassIndex), 15);
             surface.conic = -1 + bend;
             const LensSystem lens = lens_of({surface, surface, stop_plane(0, 10)});
             const LensPath<float> path(lens, LightDirection::to_scene, lens.wavelength_nm);

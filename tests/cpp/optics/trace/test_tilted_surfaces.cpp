@@ -16,8 +16,6 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 Surface placed(Surface surface, Vec3d decentre, Vec3d tilt_deg, bool returns = false) {
     surface.placement = {decentre, tilt_deg, returns};
     return surface;

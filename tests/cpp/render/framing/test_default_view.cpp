@@ -26,7 +26,7 @@ Camera camera_with(const std::string& lens) {
     return camera;
 }
 
-Image grey(int count, float exposure) {
+Image grey_image(int count, float exposure) {
     Image image;
     image.exposure = PictureFloats(std::vector<float>(3 * static_cast<std::size_t>(count), exposure));
     return image;
@@ -105,12 +105,12 @@ TEST_CASE("Daylight comes from the upper left behind the camera") {
 }
 
 TEST_CASE("Metering leaves darkness and lamps out") {
-    CHECK(metered_exposure(grey(100, 2)) == doctest::Approx(2));
-    CHECK(metered_exposure(grey(100, 0)) == 0.0);
-    Image half_black = grey(100, 2);
+    CHECK(metered_exposure(grey_image(100, 2)) == doctest::Approx(2));
+    CHECK(metered_exposure(grey_image(100, 0)) == 0.0);
+    Image half_black = grey_image(100, 2);
     for (std::size_t i = 0; i < 150; ++i) half_black.exposure[i] = 0;
     CHECK(metered_exposure(half_black) == doctest::Approx(2));
-    Image lamp = grey(100, 2);
+    Image lamp = grey_image(100, 2);
     for (std::size_t i = 0; i < 3; ++i) lamp.exposure[i] = 1e6f;
     CHECK(metered_exposure(lamp) == doctest::Approx(0.99 * 2 / (1 - 0.08)));
 }

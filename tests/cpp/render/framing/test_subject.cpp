@@ -181,7 +181,7 @@ Vec3d seen_at(const Camera& camera, Vec3d point_m) {
 }
 
 /// A room of 4 x 2.6 x 6 m with three pieces of furniture.
-constexpr Extent kWalls = {{-2, 0, -3}, {2, 2.6, 3}};
+constexpr Extent kRoomWalls = {{-2, 0, -3}, {2, 2.6, 3}};
 void furnish(Scene& scene) {
     add_box(scene, {{-1.5, 0, -2.5}, {-0.5, 1, -1.5}});
     add_box(scene, {{0.4, 0, -2}, {1.6, 0.8, 0}});
@@ -192,8 +192,8 @@ void furnish(Scene& scene) {
 
 TEST_CASE("a closed room is seen from a corner that shows its content") {
     Scene room = grey_scene(), lit = grey_scene();
-    add_box(room, kWalls, true);
-    add_box(lit, kWalls);
+    add_box(room, kRoomWalls, true);
+    add_box(lit, kRoomWalls);
     lit.points.push_back({{0, 2.4, 0}, {100, 100, 100}});
     for (Scene* scene : {&room, &lit}) furnish(*scene);
     check_whole(room);
@@ -223,7 +223,7 @@ TEST_CASE("a closed room is seen from a corner that shows its content") {
 
 TEST_CASE("an empty room is seen from one corner to the opposite one") {
     Scene room = grey_scene();
-    add_box(room, kWalls, true);
+    add_box(room, kRoomWalls, true);
     const Camera camera = framed(Assembly(room));
     CHECK(length(camera.pose.look_at_m - Vec3d{0, 1.3, 0}) < 1e-9);
     CHECK(camera.pose.position_m.x * camera.pose.position_m.z != 0);
@@ -231,7 +231,7 @@ TEST_CASE("an empty room is seen from one corner to the opposite one") {
 
 TEST_CASE("an open room fills the picture from its open side, whichever that is") {
     Scene open = grey_scene();
-    add_box(open, kWalls, true, true);
+    add_box(open, kRoomWalls, true, true);
     furnish(open);
     for (const int quarter : {0, 1, 2, 3}) {
         CAPTURE(quarter);

@@ -11,7 +11,7 @@ using namespace realcam::test;
 
 namespace {
 
-constexpr int kSamples = 1 << 17;
+constexpr int kAirSamples = 1 << 17;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ TEST_CASE("the phase function is normalised, and its samples have its Legendre m
         Uniform uniform(5);
         Mean first, second;
         const Vec3f arriving = normalized(Vec3f{0.3f, -0.5f, 0.8f});
-        for (int i = 0; i < kSamples; ++i) {
+        for (int i = 0; i < kAirSamples; ++i) {
             const Vec3f direction = sample_henyey_greenstein(g, arriving, uniform.pair());
             const double c = static_cast<double>(dot(direction, arriving));
             CHECK(length(direction) == doctest::Approx(1.0f).epsilon(1e-5));
@@ -119,7 +119,7 @@ TEST_CASE("light that the air scatters once from a point light and a spot") {
         }
         scene.points = {lamp};
         const Ray ray{{0, 0, 0}, {0.1f, 0.05f, -1}};
-        const ColorMean mean = radiance(scene, ray, 0, kSamples);
+        const ColorMean mean = radiance(scene, ray, 0, kAirSamples);
         const auto truth = [&](float extinction) {
             const auto intensity = [&](Vec3d d) {
                 if (!test.is_spot) return 7.0;
@@ -177,7 +177,8 @@ TEST_CASE("samples of a lamp and samples of the phase function find the same lig
                 },
                 0.0, 1.0, 5, 1e-6);
             Mean by_phase;
-            const ColorMean light = radiance(scene, ray, 0, kSamples), both = radiance(scene, ray, 1, 4 * kSamples);
+            const ColorMean light = radiance(scene, ray, 0, kAirSamples),
+                            both = radiance(scene, ray, 1, 4 * kAirSamples);
             const auto over_albedo = [&](const ColorMean& mean) {
                 Mean scaled = mean.g;
                 scaled.sum /= static_cast<double>(kAlbedo);
@@ -190,7 +191,7 @@ TEST_CASE("samples of a lamp and samples of the phase function find the same lig
             const BothTraversals traversals(scene);
             const SceneView view = traversals.scene();
             Uniform uniform(3);
-            for (int i = 0; i < 4 * kSamples; ++i) {
+            for (int i = 0; i < 4 * kAirSamples; ++i) {
                 MediumNumbers numbers{uniform.pair(), uniform.pair(), uniform.pair(), static_cast<std::uint32_t>(i)};
                 const MediumCrossing crossing =
                     cross_medium(view, {ray.origin, ray.direction, kFarAway, 0, {1, 1, 1}}, true, numbers);
@@ -223,18 +224,18 @@ TEST_CASE("air that only scatters does not change a uniform enclosure") {
             CAPTURE(g);
             Scene box = emitting_box({-2, -1, -1}, {1, 2, 3}, {3, 3, 3});
             box.air = air_of(extinction, {1, 1, 1}, g);
-            const ColorMean in_box = radiance(box, ray, 64, kSamples);
+            const ColorMean in_box = radiance(box, ray, 64, kAirSamples);
             Scene sky = nothing_in_view();
             sky.positions_m = {{-1, -1, -1}, {-1, -1, -0.99}, {-1, -0.99, -1}};
             sky.environment.constant = {3, 3, 3};
             sky.air = box.air;
             sky.air.margin_m = 1.0;
-            const ColorMean under_sky = radiance(sky, ray, 64, kSamples);
+            const ColorMean under_sky = radiance(sky, ray, 64, kAirSamples);
             Scene map = sky;
             map.environment.width = 4;
             map.environment.height = 2;
             map.environment.pixels.assign(8, {3, 3, 3});
-            const ColorMean under_map = radiance(map, ray, 64, kSamples);
+            const ColorMean under_map = radiance(map, ray, 64, kAirSamples);
             for (const ColorMean& mean : {in_box, under_sky, under_map}) {
                 worst.add(mean.r, 3);
                 worst.add(mean.g, 3);

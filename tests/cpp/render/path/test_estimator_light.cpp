@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bare_scene.hpp"
 #include "chi_square.hpp"
 #include "estimator_mean.hpp"
 #include "scene/lights/light.hpp"
@@ -51,21 +52,9 @@ LightReceiver receiver_at(Vec3d position, Vec3d normal) {
     return {static_cast<Vec3f>(position), static_cast<Vec3f>(normalized(normal))};
 }
 
-struct Lamp {
-    Vec3d a, b, c;
-    float radiance;
-};
-
-Scene scene_of(const std::vector<Lamp>& lamps) {
+Scene scene_of_lamps(const std::vector<Lamp>& lamps) {
     Scene scene;
-    for (const Lamp& lamp : lamps) {
-        const auto first = static_cast<std::uint32_t>(scene.positions_m.size());
-        scene.positions_m.insert(scene.positions_m.end(), {lamp.a, lamp.b, lamp.c});
-        scene.triangles.push_back({{first, first + 1, first + 2}, static_cast<std::uint32_t>(scene.materials.size())});
-        Material material;
-        material.emission = {lamp.radiance, lamp.radiance, lamp.radiance};
-        scene.materials.push_back(material);
-    }
+    add_lamps(scene, lamps);
     return scene;
 }
 
@@ -107,7 +96,7 @@ TEST_CASE("direct light of shining triangles is the integral over them") {
             });
         }
         REQUIRE(truth > 0);
-        const Scene scene = scene_of(test.lamps);
+        const Scene scene = scene_of_lamps(test.lamps);
         const RenderSpaceScene placed(scene, {0, 0, 0});
         const LightReceiver receiver = receiver_at(test.position, test.normal);
         // By which lobe lights are chosen has no say in the mean.
@@ -148,7 +137,7 @@ TEST_CASE("direct light of an environment is the integral over its pixels") {
     unsigned seed = 1;
     for (const std::vector<float>& image : images)
         for (const Vec3d& n : {Vec3d{0, 1, 0}, normalized(Vec3d{1, 0.5, -0.3}), normalized(Vec3d{-0.2, -1, 0.4})}) {
-            Scene scene = scene_of({{{0, 0, 9}, {1, 0, 9}, {0, 1, 9}, 0}});
+            Scene scene = scene_of_lamps({{{0, 0, 9}, {1, 0, 9}, {0, 1, 9}, 0}});
             scene.environment.width = kWidth;
             scene.environment.height = kHeight;
             for (const float v : image) scene.environment.pixels.push_back({v, v, v});

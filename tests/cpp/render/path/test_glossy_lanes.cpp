@@ -10,17 +10,17 @@ namespace {
 
 /// The narrowest lobe here: directions are off by some 2^-22, which are 3e-6 of its width, and its density goes with
 /// the fourth power of that. At each of six surfaces: 7e-5, and twice that for what is met a little beside.
-constexpr float kRoughness = 0.3f, kTolerance = 2e-4f;
+constexpr float kWallRoughness = 0.3f, kLaneTolerance = 2e-4f;
 
-Material rough_metal() {
+Material rough_metal_wall() {
     Material m;
     m.model = MaterialModel::metallic_roughness;
     m.diffuse = {0.9f, 0.6f, 0.3f};
     m.metallic = 1;
-    m.roughness = kRoughness;
+    m.roughness = kWallRoughness;
     return m;
 }
-Material varnished() {
+Material varnished_wall() {
     Material m;
     m.model = MaterialModel::metallic_roughness;
     m.diffuse = {0.2f, 0.7f, 0.4f};
@@ -29,20 +29,20 @@ Material varnished() {
     return m;
 }
 /// Half metal, and reflecting little as a dielectric.
-Material mixed() {
-    Material m = varnished();
+Material mixed_wall() {
+    Material m = varnished_wall();
     m.metallic = 0.5f;
     m.specular_weight = 0.3f;
     return m;
 }
-Material coated() {
-    Material m = varnished();
+Material coated_wall() {
+    Material m = varnished_wall();
     m.clearcoat = 0.8f;
-    m.clearcoat_roughness = kRoughness;
+    m.clearcoat_roughness = kWallRoughness;
     return m;
 }
-Material rough_glass() {
-    Material m = varnished();
+Material rough_glass_wall() {
+    Material m = varnished_wall();
     m.transmission = 0.7f;
     m.absorption = {0.1f, 0.2f, 0.3f};
     return m;
@@ -53,11 +53,11 @@ Material mirror() {
     return m;
 }
 Material polished() {
-    Material m = varnished();
+    Material m = varnished_wall();
     m.roughness = 0;
     return m;
 }
-Material phong() {
+Material phong_wall() {
     Material m;
     m.specular = {0.3f, 0.3f, 0.3f};
     m.shininess = 40;
@@ -69,15 +69,20 @@ struct Wall {
     Material (*material)();
 };
 
-const Wall kWalls[] = {{"rough metal", rough_metal}, {"varnished", varnished}, {"mixed", mixed},
-                       {"coated", coated},           {"glass", rough_glass},   {"mirror", mirror},
-                       {"polished", polished},       {"phong", phong}};
+const Wall kWalls[] = {{"rough metal", rough_metal_wall},
+                       {"varnished", varnished_wall},
+                       {"mixed", mixed_wall},
+                       {"coated", coated_wall},
+                       {"glass", rough_glass_wall},
+                       {"mirror", mirror},
+                       {"polished", polished},
+                       {"phong", phong_wall}};
 
 /// A floor of rough metal, a wall, and a Lambertian plate before it; the lamp shines up, too.
 Scene room(const Material& wall) {
     Scene scene = lamp_room();
     scene.materials.push_back(scene.materials[0]);
-    scene.materials[0] = rough_metal();
+    scene.materials[0] = rough_metal_wall();
     scene.materials[1] = wall;
     scene.materials[2].emits_on_both_sides = 1;
     add_quad(scene, {-1, 0, -1}, {1, 0, -1}, {1, 1, -1}, {-1, 1, -1}, 3);
@@ -95,22 +100,22 @@ TEST_CASE("in scenes of all materials each lane of a block takes the path of a b
                 CAPTURE(settings.max_bounces);
                 Scene scene = room(wall.material());
                 light.add(scene);
-                check_lanes<SceneKind::opaque>(Assembly(scene), settings, kTolerance);
+                check_lanes<SceneKind::opaque>(Assembly(scene), settings, kLaneTolerance);
                 scene.materials[3].only_shadows = 1;
-                check_lanes<SceneKind::any>(Assembly(scene), settings, kTolerance);
+                check_lanes<SceneKind::any>(Assembly(scene), settings, kLaneTolerance);
             }
 }
 
 TEST_CASE("smooth normals that turn away from the eye are the same in all lanes") {
-    Scene scene = room(varnished());
+    Scene scene = room(varnished_wall());
     scene.normals.resize(scene.positions_m.size(), {0.9f, 0.1f, 0.4f});
     for (Vec3f& n : scene.normals) n = normalized(n);
-    check_lanes<SceneKind::opaque>(Assembly(scene), PathSettings{5}, kTolerance);
+    check_lanes<SceneKind::opaque>(Assembly(scene), PathSettings{5}, kLaneTolerance);
 }
 
 TEST_CASE("a lane without a light holds a direction that tables can be read by, whatever was in memory") {
     constexpr int kLanes = 16;
-    Scene scene = room(varnished());
+    Scene scene = room(varnished_wall());
     scene.environment.constant = grey(1e-6f);  // too dim for a sample of its own
     const BothTraversals traversals{Assembly(scene)};
     const SceneView view = traversals.scene();

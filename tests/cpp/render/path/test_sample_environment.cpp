@@ -17,7 +17,7 @@ using namespace realcam::test;
 
 namespace {
 
-constexpr int kSamples = 1 << 18;
+constexpr int kSkySamples = 1 << 18;
 
 Scene under_image(int height, int width, const std::vector<float>& grey) {
     Scene scene = bare_scene();
@@ -52,9 +52,9 @@ Bins over_image(const EnvironmentView& e, Sampler&& sampler, unsigned seed) {
         return static_cast<double>(environment_image_pdf(e, static_cast<Vec3f>(d))) * r * (M_PI / e.height) *
                (2 * M_PI / e.width);
     };
-    bins.expect(density, kSamples, 1);
+    bins.expect(density, kSkySamples, 1);
     Uniform uniform(seed);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kSkySamples; ++i) {
         const Vec3d d = static_cast<Vec3d>(sampler(uniform.pair()).direction);
         bins.add(std::atan2(std::hypot(d.x, d.z), d.y) / M_PI * e.height,
                  (std::atan2(d.x, -d.z) / (2 * M_PI) + 0.5) * e.width);

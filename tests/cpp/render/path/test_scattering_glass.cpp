@@ -12,7 +12,7 @@ using namespace realcam::test;
 
 namespace {
 
-constexpr int kSamples = 1 << 17;
+constexpr int kGlassSamples = 1 << 17;
 
 /// Smooth glass with this medium inside.
 Material glass_of(Color absorption, Color scattering, float anisotropy, float ior) {
@@ -95,7 +95,7 @@ TEST_CASE("light that scattering glass neither absorbs nor scatters follows Beer
         const Color scattering = albedo * extinction;
         Scene scene = emitting_box({-50, -50, -11}, {50, 50, -10}, {100, 100, 100});
         add_glass(scene, {-9, -9, -5}, {9, 9, -2}, glass_of(extinction - scattering, scattering, 0, 1));
-        return radiance(scene, {{0, 0, 0}, {0, 0, -1}}, max_bounces, kSamples);
+        return radiance(scene, {{0, 0, 0}, {0, 0, -1}}, max_bounces, kGlassSamples);
     };
     const double truth[] = {100 * std::exp(-3 * 0.3), 100 * std::exp(-3 * 0.5), 100 * std::exp(-3 * 1.2)};
     // The albedo is so small that scattered light does not count.
@@ -121,7 +121,7 @@ TEST_CASE("light that a slab without refraction scatters once") {
             CAPTURE(thickness);
             Scene scene = slab(thickness, {1, 2, 4}, grey(kAlbedo), g);
             set_upper_sky(scene);
-            const ColorMean mean = radiance(scene, {{0, 1, 0}, {0, -1, 0}}, 3, kSamples);
+            const ColorMean mean = radiance(scene, {{0, 1, 0}, {0, -1, 0}}, 3, kGlassSamples);
             // Chandrasekhar 1960, chapter VII, section 47: radiance in the direction of the normal of light from mu,
             // mu / (4 pi (mu + 1)) p (1 - exp(-tau (1 + 1 / mu))) per solid angle; the light is turned by more than 90
             // degrees.
@@ -161,7 +161,7 @@ TEST_CASE("light of a point light inside of scattering glass") {
         // The ray starts 1 m in front of the glass; one bounce at the glass, and one scattering.
         const Vec3d origin = (-1 / -direction.z) * direction;
         const ColorMean mean =
-            radiance(scene, {static_cast<Vec3f>(origin), static_cast<Vec3f>(direction)}, 1, kSamples);
+            radiance(scene, {static_cast<Vec3f>(origin), static_cast<Vec3f>(direction)}, 1, kGlassSamples);
         const auto truth = [&](float sigma) {
             // The light leaves the glass after at least 8 free paths elsewhere.
             return 0.5 * scattered_once({0, 0, 0}, direction, 80, static_cast<double>(sigma), static_cast<double>(g),
@@ -198,7 +198,7 @@ TEST_CASE("a lamp inside of scattering glass is found by light samples and by pa
             },
             0.0, 1.0, 5, 1e-6);
         for (const int bounces : {1, 2}) {
-            Mean mean = radiance(scene, {{0, 0, 1}, {0, 0, -1}}, bounces, 4 * kSamples).g;
+            Mean mean = radiance(scene, {{0, 0, 1}, {0, 0, -1}}, bounces, 4 * kGlassSamples).g;
             mean.sum /= static_cast<double>(kAlbedo);
             mean.squares /= static_cast<double>(kAlbedo) * static_cast<double>(kAlbedo);
             worst.add(mean, truth);
@@ -218,7 +218,7 @@ TEST_CASE("a deep slab without refraction reflects as a semi-infinite medium") {
         scene.environment.constant = {1, 1, 1};
         const double sine = std::sqrt(1 - mu * mu);
         const Vec3f direction = static_cast<Vec3f>(Vec3d{sine, -mu, 0});
-        const ColorMean mean = radiance(scene, {{0, 1, 0}, direction}, 64, kSamples);
+        const ColorMean mean = radiance(scene, {{0, 1, 0}, direction}, 64, kGlassSamples);
         // Reflectance of uniform light in one direction: Chandrasekhar 1960 by reciprocity, or Hapke 1981, eq. 19. The
         // sides and the bottom are at least 16 diffusion lengths away.
         const auto truth = [&](float a) {
@@ -251,11 +251,11 @@ TEST_CASE("glass that only scatters does not change a uniform enclosure" * docte
                 Scene box = emitting_box({-2, -2, -2}, {2, 2, 2}, {3, 3, 3});
                 add_glass(box, {-0.5, -0.6, -0.4}, {0.5, 0.4, 0.6}, glass_of({0, 0, 0}, scattering, g, ior));
                 const Ray ray{{1.4f, 1.1f, 1.3f}, {-1, -0.8f, -0.9f}};
-                const ColorMean in_box = radiance(box, ray, 64, kSamples);
+                const ColorMean in_box = radiance(box, ray, 64, kGlassSamples);
                 Scene sky;
                 add_glass(sky, {-0.5, -0.6, -0.4}, {0.5, 0.4, 0.6}, box.materials[1]);
                 sky.environment.constant = {3, 3, 3};
-                const ColorMean under_sky = radiance(sky, ray, 64, kSamples);
+                const ColorMean under_sky = radiance(sky, ray, 64, kGlassSamples);
                 for (const ColorMean& mean : {in_box, under_sky}) {
                     worst.add(mean.r, 3);
                     worst.add(mean.g, 3);

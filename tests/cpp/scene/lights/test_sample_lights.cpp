@@ -17,7 +17,7 @@ using namespace realcam::test;
 
 namespace {
 
-constexpr int kSamples = 1 << 18;
+constexpr int kLampSamples = 1 << 18;
 
 // Histogram of a light's points in barycentric coordinates: 4 x 4 cells of the unit square, whose lower left half is
 // the triangle. Expected counts follow from pdf(distance, cosine), per steradian, at a point in front of the light.
@@ -41,7 +41,7 @@ struct OnLights {
                     const double height = a + b == 3 ? 1 - x : 1;
                     return height * per_share((a + x) / 4, (b + height * y) / 4) / 16;
                 };
-                expected.push_back(a + b > 3 ? 0 : kSamples * integral(in_part, 0, 1, 0, 1, 8));
+                expected.push_back(a + b > 3 ? 0 : kLampSamples * integral(in_part, 0, 1, 0, 1, 8));
             }
         counts.resize(expected.size());
     }
@@ -57,21 +57,9 @@ struct OnLights {
     }
 };
 
-struct Lamp {
-    Vec3d a, b, c;
-    float radiance;
-};
-
 Scene with_lamps(const std::vector<Lamp>& lamps) {
     Scene scene = bare_scene();
-    for (const Lamp& lamp : lamps) {
-        const auto first = static_cast<std::uint32_t>(scene.positions_m.size());
-        scene.positions_m.insert(scene.positions_m.end(), {lamp.a, lamp.b, lamp.c});
-        scene.triangles.push_back({{first, first + 1, first + 2}, static_cast<std::uint32_t>(scene.materials.size())});
-        Material material;
-        material.emission = {lamp.radiance, lamp.radiance, lamp.radiance};
-        scene.materials.push_back(material);
-    }
+    add_lamps(scene, lamps);
     return scene;
 }
 
@@ -114,7 +102,7 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
             });
             OnLights seen(light, from,
                           [&](float distance, float cosine) { return solid_angle_pdf(light, from, distance, cosine); });
-            for (int i = 0; i < kSamples; ++i) {
+            for (int i = 0; i < kLampSamples; ++i) {
                 const Vec2f u = uniform.pair();
                 const auto add = [&](const LightSample& sample, OnLights& bins) {
                     bins.add(light, static_cast<Vec3d>(from) +
@@ -136,7 +124,7 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
     OnLights bins(lamp, {0, 0, 1},
                   [&](float distance, float cosine) { return area_light_pdf(lamp.area, distance * distance, cosine); });
     Uniform uniform(1);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kLampSamples; ++i) {
         const Vec2f u = uniform.pair();
         bins.add(lamp, {static_cast<double>(u.x * (1 - u.y)), static_cast<double>(u.x * u.y), 0});
     }
@@ -329,14 +317,14 @@ TEST_CASE("a light is chosen from the tree with the probability that is said of 
     for (const LightReceiver& receiver : receivers_of_many_lights()) {
         std::vector<double> expected, counts(static_cast<std::size_t>(lights));
         for (int i = 0; i < lights; ++i)
-            expected.push_back(kSamples * static_cast<double>(light_probability(view, receiver, i)));
+            expected.push_back(kLampSamples * static_cast<double>(light_probability(view, receiver, i)));
         Uniform uniform(seed++);
-        for (int i = 0; i < kSamples; ++i) {
+        for (int i = 0; i < kLampSamples; ++i) {
             const LightChoice choice = choose_light(view, receiver, uniform(), static_cast<std::uint32_t>(i));
             REQUIRE((choice.light >= 0 && choice.light < lights && choice.fresh >= 0 && choice.fresh < 1));
             const auto light = static_cast<std::size_t>(choice.light);
-            worst =
-                std::max(worst, std::fabs(kSamples * static_cast<double>(choice.probability) / expected[light] - 1));
+            worst = std::max(worst,
+                             std::fabs(kLampSamples * static_cast<double>(choice.probability) / expected[light] - 1));
             ++counts[light];
         }
         tests.add(expected, counts);
@@ -389,9 +377,9 @@ void check_kinds(ChiSquareTests& tests, const SceneView& view, LightReceiver rec
     CHECK(share[0] + share[1] + share[2] + share[3] == doctest::Approx(1).epsilon(1e-6));
     CHECK((share[3] > 0) != kinds.environment_is_separate);
     std::vector<double> expected, counts(4);
-    for (const double s : share) expected.push_back(s * kSamples);
+    for (const double s : share) expected.push_back(s * kLampSamples);
     Uniform uniform(seed);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kLampSamples; ++i) {
         const LightPick pick = pick_light(view, receiver, kinds, 0, uniform.pair(), 1);
         ++counts[pick.kind == LightKind::sun           ? static_cast<std::size_t>(1 + pick.index)
                  : pick.kind == LightKind::environment ? 3u

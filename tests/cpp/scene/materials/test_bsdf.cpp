@@ -15,10 +15,10 @@ using namespace realcam::test;
 
 namespace {
 
-constexpr int kSamples = 1 << 17;
+constexpr int kBsdfSamples = 1 << 17;
 
-std::vector<Surface> rough_surfaces() {
-    std::vector<Surface> all;
+std::vector<NamedSurface> rough_surfaces() {
+    std::vector<NamedSurface> all;
     for (const float roughness : {0.15f, 0.4f, 1.0f}) {
         const auto rough = [&](const std::string& name, auto&& change) {
             all.push_back(metallic_roughness(numbered(name, roughness), [&](Material& m) {
@@ -41,8 +41,8 @@ std::vector<Surface> rough_surfaces() {
 }
 
 /// Glass, which for tests of reciprocity has another factor.
-std::vector<Surface> rough_glass() {
-    std::vector<Surface> all;
+std::vector<NamedSurface> rough_glass() {
+    std::vector<NamedSurface> all;
     for (const float roughness : {0.35f, 0.6f, 1.0f}) {
         all.push_back(metallic_roughness(numbered("glass", roughness), [&](Material& m) {
             m.roughness = roughness;
@@ -58,7 +58,7 @@ std::vector<Surface> rough_glass() {
     return all;
 }
 
-bool has_narrow_lobe(const Surface& surface) {
+bool has_narrow_lobe(const NamedSurface& surface) {
     const Material& m = surface.material;
     return m.model == MaterialModel::phong ? m.shininess > 100 : m.roughness < 0.4f;
 }
@@ -73,11 +73,11 @@ void add_test(ChiSquareTests& tests, const BsdfT& bsdf, bool is_narrow, unsigned
             const double r = std::sqrt(std::max(0.0, 1 - z * z));
             return static_cast<double>(bsdf.pdf(static_cast<Vec3f>(Vec3d{r * std::cos(turn), r * std::sin(turn), z})));
         },
-        kSamples, is_narrow ? 6 : 2);  // 42 points across a bin, which holds the narrowest lobe six times, or 14
+        kBsdfSamples, is_narrow ? 6 : 2);  // 42 points across a bin, which holds the narrowest lobe six times, or 14
     double ended = 0, total = 0;
     for (const double e : bins.expected) total += e;
     Uniform uniform(seed);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kBsdfSamples; ++i) {
         const Vec2f u = uniform.pair();
         const BsdfSample s = bsdf.sample(u, uniform());
         if (s.pdf > 0)
@@ -88,7 +88,7 @@ void add_test(ChiSquareTests& tests, const BsdfT& bsdf, bool is_narrow, unsigned
     }
     // Directions below the horizon of a lobe have no density; samples that end there have one bin.
     std::vector<double> expected = bins.expected, counts = bins.counts;
-    expected.push_back(std::max(0.0, kSamples - total));
+    expected.push_back(std::max(0.0, kBsdfSamples - total));
     counts.push_back(ended);
     tests.add(expected, counts, bins.outliers);
 }
@@ -98,14 +98,14 @@ void add_test(ChiSquareTests& tests, const BsdfT& bsdf, bool is_narrow, unsigned
 TEST_CASE("directions follow the density of the whole BSDF") {
     ChiSquareTests tests("BSDFs: metal, dielectric, film, coat, glass, Phong");
     unsigned seed = 1;
-    std::vector<Surface> all = rough_surfaces();
-    for (const Surface& glass : rough_glass()) all.push_back(glass);
-    for (const Surface& surface : all)
+    std::vector<NamedSurface> all = rough_surfaces();
+    for (const NamedSurface& glass : rough_glass()) all.push_back(glass);
+    for (const NamedSurface& surface : all)
         for (const double cosine : {0.95, 0.5}) {
             CAPTURE(surface.name);
             add_test(tests, bsdf_of(surface, eye_at(cosine)), has_narrow_lobe(surface), seed++);
         }
-    for (const Surface& surface : rough_surfaces()) {
+    for (const NamedSurface& surface : rough_surfaces()) {
         if (!surface.material.is_plain()) continue;
         const Material& m = surface.material;
         add_test(tests, make_bsdf<SceneKind::plain>(point_on(surface), eye_at(0.6)), has_narrow_lobe(surface), seed++);
@@ -116,9 +116,9 @@ TEST_CASE("directions follow the density of the whole BSDF") {
 
 TEST_CASE("the weight of a direction is the BSDF times the cosine over the density") {
     double worst = 0;
-    std::vector<Surface> all = rough_surfaces();
-    for (const Surface& glass : rough_glass()) all.push_back(glass);
-    for (const Surface& surface : all)
+    std::vector<NamedSurface> all = rough_surfaces();
+    for (const NamedSurface& glass : rough_glass()) all.push_back(glass);
+    for (const NamedSurface& surface : all)
         for (const double cosine : {1.0, 0.4, 0.02}) {
             CAPTURE(surface.name);
             const Bsdf bsdf = bsdf_of(surface, eye_at(cosine));
@@ -139,7 +139,7 @@ TEST_CASE("the weight of a direction is the BSDF times the cosine over the densi
 TEST_CASE("light takes the same way in both directions") {
     double worst = 0;
     int compared = 0;
-    for (const Surface& surface : rough_surfaces()) {
+    for (const NamedSurface& surface : rough_surfaces()) {
         CAPTURE(surface.name);
         Uniform uniform(7);
         for (int i = 0; i < 4000; ++i) {
@@ -168,11 +168,11 @@ TEST_CASE("light takes the same way in both directions") {
 TEST_CASE("radiance through rough glass is reciprocal by the square of the index") {
     double worst = 0;
     for (const float roughness : {0.4f, 0.7f, 1.0f}) {
-        const Surface front = metallic_roughness("glass", [&](Material& m) {
+        const NamedSurface front = metallic_roughness("glass", [&](Material& m) {
             m.roughness = roughness;
             m.transmission = 1;
         });
-        const Surface back = from_behind(front);
+        const NamedSurface back = from_behind(front);
         Uniform uniform(3);
         for (int i = 0; i < 4000; ++i) {
             const Vec3f above = sample_cosine({0, 0, 1}, uniform.pair()),
@@ -191,11 +191,11 @@ TEST_CASE("radiance through rough glass is reciprocal by the square of the index
 }
 
 TEST_CASE("the ends of the square, and surfaces that reflect nothing") {
-    std::vector<Surface> all = rough_surfaces();
-    for (const Surface& glass : rough_glass()) all.push_back(glass);
+    std::vector<NamedSurface> all = rough_surfaces();
+    for (const NamedSurface& glass : rough_glass()) all.push_back(glass);
     all.push_back(phong("black", [](Material&) {}));
     all.push_back(metallic_roughness("smooth glass", [](Material& m) { m.transmission = 1, m.roughness = 0; }));
-    for (const Surface& surface : all)
+    for (const NamedSurface& surface : all)
         for (const double cosine : {1.0, 0.3, 1e-4})
             for (const Vec2f u : extreme_inputs())
                 for (const float choice : {0.0f, 0.5f, 0x1.fffffep-1f}) {

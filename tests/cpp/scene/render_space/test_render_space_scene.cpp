@@ -34,15 +34,19 @@ Scene ground(Vec3d middle, double half, Vec3d right, Vec3d up) {
     return scene;
 }
 
-const Vec3d kRight = normalized(Vec3d{1, -0.3, 0.1}), kUp = normalized(cross(kRight, Vec3d{0.2, 1, 0.3}));
-const Vec3d kNormal = cross(kRight, kUp);
+const Vec3d kPlaneRight = normalized(Vec3d{1, -0.3, 0.1}),
+            kPlaneUp = normalized(cross(kPlaneRight, Vec3d{0.2, 1, 0.3}));
+const Vec3d kPlaneNormal = cross(kPlaneRight, kPlaneUp);
 
 // Positions of the ground's centre relative to the camera, which is above the centre, an edge and a corner, beside the
 // ground, in its plane, and almost in its plane.
 std::vector<Vec3d> middles(double half) {
-    return {
-        -1.5 * kNormal + Vec3d{0.2, 0.1, 0},  -1.5 * kNormal + half * kRight, -20.0 * kNormal + half * (kRight + kUp),
-        -1.5 * kNormal + (half + 3) * kRight, 0.3 * kRight + 0.1 * kUp,       -1e-6 * kNormal + 7.0 * kUp};
+    return {-1.5 * kPlaneNormal + Vec3d{0.2, 0.1, 0},
+            -1.5 * kPlaneNormal + half * kPlaneRight,
+            -20.0 * kPlaneNormal + half * (kPlaneRight + kPlaneUp),
+            -1.5 * kPlaneNormal + (half + 3) * kPlaneRight,
+            0.3 * kPlaneRight + 0.1 * kPlaneUp,
+            -1e-6 * kPlaneNormal + 7.0 * kPlaneUp};
 }
 
 double distance_to_segment(Vec3d p, Vec3d a, Vec3d b) {
@@ -81,7 +85,7 @@ TEST_CASE("large triangles come in pieces that fit together and cover the same")
     for (const double half : {1e5, 1e8})
         for (const Vec3d& middle : middles(half)) {
             CAPTURE(half);
-            const Scene scene = ground(middle, half, kRight, kUp);
+            const Scene scene = ground(middle, half, kPlaneRight, kPlaneUp);
             const SplitTriangles split(scene, relative_to({0, 0, 0}), LargeTriangles::cut, unasked);
             REQUIRE(split.any());
             most = std::max(most, split.triangles().size());
@@ -91,7 +95,7 @@ TEST_CASE("large triangles come in pieces that fit together and cover the same")
                 const Vec3d a = split.position(t.vertices[0]), b = split.position(t.vertices[1]),
                             c = split.position(t.vertices[2]);
                 const Vec3d twice = cross(b - a, c - a);
-                CHECK(dot(twice, kNormal) > 0);
+                CHECK(dot(twice, kPlaneNormal) > 0);
                 CHECK(split.parent(i) < 2);
                 area += 0.5 * length(twice);
                 // No corner of another piece lies inside an edge, where a gap could open.
@@ -106,12 +110,12 @@ TEST_CASE("large triangles come in pieces that fit together and cover the same")
             }
             CHECK(std::fabs(area / (4 * half * half) - 1) < 1e-9);
             const RenderSpaceScene placed(scene, {0, 0, 0});
-            const double height = dot(middle, kNormal);
+            const double height = dot(middle, kPlaneNormal);
             worst = std::max(worst, displacement(placed.static_geometry().triangles(),
-                                                 placed.static_geometry().positions(), kNormal, height));
+                                                 placed.static_geometry().positions(), kPlaneNormal, height));
             std::vector<Vec3f> corners;
             for (const Vec3d& p : scene.positions_m) corners.push_back(static_cast<Vec3f>(p));
-            uncut = std::max(uncut, displacement(scene.triangles, corners, kNormal, height));
+            uncut = std::max(uncut, displacement(scene.triangles, corners, kPlaneNormal, height));
         }
     CHECK(most < 300);
     // Pieces are up to 128 times as large as their distance; corners of the largest lie twice as far, and round by
@@ -130,22 +134,22 @@ TEST_CASE("what is not large for its distance stays as it is") {
     CHECK(&split.triangles() == &scene.triangles);
     CHECK(&split.normals() == &scene.normals);
     // From afar the largest one is small.
-    const Scene large = ground({0, 0, -1e9}, 1e8, kRight, kUp);
+    const Scene large = ground({0, 0, -1e9}, 1e8, kPlaneRight, kPlaneUp);
     CHECK(!SplitTriangles(large, relative_to({0, 0, 0}), LargeTriangles::cut, unasked).any());
 }
 
 TEST_CASE("normals and texture coordinates of a piece are those of the whole") {
     const Vec3d middle = middles(1e5)[0];
-    const Scene scene = ground(middle, 1e5, kRight, kUp);
+    const Scene scene = ground(middle, 1e5, kPlaneRight, kPlaneUp);
     const RenderSpaceScene placed(scene, {0, 0, 0});
     const SceneView view = placed.view();
     const SplitTriangles split(scene, relative_to({0, 0, 0}), LargeTriangles::cut, unasked);
     for (std::size_t i = 0; i < split.triangles().size(); ++i)
         for (const std::uint32_t v : split.triangles()[i].vertices) {
             const Vec3d p = split.position(v) - middle;
-            CHECK(std::fabs(static_cast<double>(view.uvs[v].x) - dot(p, kRight) / 1e5) < 1e-6);
-            CHECK(std::fabs(static_cast<double>(view.uvs[v].y) - dot(p, kUp) / 1e5) < 1e-6);
-            const double s = 0.5 * (dot(p, kRight) / 1e5 + 1), t = 0.5 * (dot(p, kUp) / 1e5 + 1);
+            CHECK(std::fabs(static_cast<double>(view.uvs[v].x) - dot(p, kPlaneRight) / 1e5) < 1e-6);
+            CHECK(std::fabs(static_cast<double>(view.uvs[v].y) - dot(p, kPlaneUp) / 1e5) < 1e-6);
+            const double s = 0.5 * (dot(p, kPlaneRight) / 1e5 + 1), t = 0.5 * (dot(p, kPlaneUp) / 1e5 + 1);
             const Vec3f* n = scene.normals.data();
             const Vec3d expected = split.parent(i) == 0
                                        ? (1 - s) * static_cast<Vec3d>(n[0]) + (s - t) * static_cast<Vec3d>(n[1]) +
@@ -154,7 +158,7 @@ TEST_CASE("normals and texture coordinates of a piece are those of the whole") {
                                              (t - s) * static_cast<Vec3d>(n[3]);
             CHECK(length(static_cast<Vec3d>(view.normals[v]) - expected) < 1e-6);
             const Vec3f whole = view.planes[i].normal;
-            CHECK(length(static_cast<Vec3d>(whole) - kNormal) < 2e-7);
+            CHECK(length(static_cast<Vec3d>(whole) - kPlaneNormal) < 2e-7);
         }
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "optics/prescription/coating.hpp"
+#include "optics/prescription/lens_system.hpp"
 
 namespace realcam::test {
 
@@ -14,6 +15,15 @@ inline Coating three_layers() {
         layers.push_back({film, thickness_of_waves(film, waves, 550)});
     }
     return layered_coating(std::move(layers), "three layers");
+}
+
+/// A lens with a coating on all faces in air, and aluminium on its mirrors.
+inline LensSystem coated(LensSystem lens, const Coating& coating) {
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+        if (is_face_in_air(lens, i)) lens.surfaces[i].coating = coating;
+    for (Surface& surface : lens.surfaces)
+        if (surface.type == SurfaceType::mirror) surface.coating = *named_coating("aluminium");
+    return lens;
 }
 
 }  // namespace realcam::test
