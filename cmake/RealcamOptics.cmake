@@ -24,6 +24,7 @@ set(lane_sources adjoint_path.cpp outline_rays.cpp tangent_path.cpp)
 list(TRANSFORM lane_sources PREPEND ${PROJECT_SOURCE_DIR}/cpp/optics/derivatives/)
 set_source_files_properties(${lane_sources} PROPERTIES
   COMPILE_OPTIONS "$<$<NOT:$<CONFIG:Debug>>:${REALCAM_KERNEL_FLAGS}>")
+# For this machine alone, one version of them is enough (cpp/optics/derivatives/dual.hpp).
 if(REALCAM_INSTRUCTION_SETS STREQUAL machine AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
   realcam_widest_instruction_set(widest)
   if(NOT widest STREQUAL v2)
