@@ -48,7 +48,7 @@ private:
     /// Traces a block of rays on the outline, with the rims' tangents times the M weights of each ray.
     template <int M>
     void trace_outline(const OutlineBlock& block, const double (&weights)[kRays][M], TangentPath::Sums& sums) const;
-    /// As `reverse`, with M tangents of each ray.
+    /// Returns the result of `reverse` by M tangents of each ray: 2 if the film has a control variate, else 1.
     template <int M>
     std::vector<double> reverse_along(const AdjointFilm& film, const GradientSamples& samples,
                                       const KeepGoing& keep_going);

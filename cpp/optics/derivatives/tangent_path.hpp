@@ -68,8 +68,8 @@ public:
     /// wavelengths at the surfaces, in the order of the trace; null: all rays have the wavelength of the constructor.
     void trace(Rays& rays, Sums& sums, const int* starts = nullptr, const Vec3d* rim_tangents = nullptr,
                const WavelengthsInDouble* wavelengths = nullptr) const;
-    /// As above, for rays with two tangents: the pose's sums are those of the second, all others those of the first.
-    /// `rim_tangents`: two of each lane, side by side.
+    /// Traces rays with two tangents in the same way. The pose's sums are those of the second, all others those of the
+    /// first. `rim_tangents`: two of each lane, side by side.
     void trace(TangentRays<kLanes, 2>& rays, Sums& sums, const int* starts = nullptr,
                const Vec3d* rim_tangents = nullptr, const WavelengthsInDouble* wavelengths = nullptr) const;
 
