@@ -23,17 +23,17 @@ struct PictureGradient::SampleLight {
     float variable;  ///< WavelengthVariable of the sample, if the camera has dispersion
 };
 
-/// Rays that wait until a block of them can be traced with their tangents.
+/// Rays that wait until a block of them can be traced with their M tangents.
+template <int M>
 struct PictureGradient::RayBlock {
-    TangentPath::Rays rays;
+    TangentRays<kRays, M> rays;
     SampleLight lights[kRays];
     float variable[kRays];
     int count = 0;
 
-    /// Adds a ray at the film.
+    /// Adds a ray at the film, whose tangents are not set.
     void add(const SampleLight& light, const OutlineLens& lens, Vec3f origin, Vec3f direction) {
         set_film_ray(lens, origin, direction, rays, count);
-        rays.direction_tangent.set(count, {0, 0, 0});
         variable[count] = light.variable;
         lights[count++] = light;
     }
@@ -43,19 +43,15 @@ struct PictureGradient::RayBlock {
         for (int i = count; i < kRays; ++i) {
             rays.origin.set(i, rays.origin[count - 1]);
             rays.direction.set(i, rays.direction[count - 1]);
-            rays.direction_tangent.set(i, {0, 0, 0});
+            for (RayTangents<kRays>& tangents : rays.tangents) tangents.direction.set(i, {0, 0, 0});
             variable[i] = variable[count - 1];
         }
-    }
-    /// Sets the tangent of a ray by the light's direction cosines at the film, which are opposite to the ray's.
-    void set_tangent(int lane, Vec2d w) {
-        rays.direction_tangent.set(lane, tangent_of_cosines(rays.direction[lane], {-w.x, -w.y}));
     }
 };
 
 /// Rays that graze a rim, with the light that they bring.
 struct PictureGradient::OutlineBlock {
-    TangentPath::Rays rays;
+    LensRays<double, kRays> rays;
     const OutlinePoint* points[kRays];
     SampleLight lights[kRays];
     int count;  ///< lanes in use; the others hold copies of the last ray

@@ -9,7 +9,6 @@
 #include <numeric>
 #include <utility>
 
-#include "../render/gradients/filtered_film.hpp"
 #include "gradient_row.hpp"
 #include "lens_rays.hpp"
 
@@ -99,24 +98,28 @@ const WavelengthsInDouble* PictureGradient::if_dispersed(const WavelengthsInDoub
     return view_.effects.dispersion ? &many : nullptr;
 }
 
-void PictureGradient::trace_film(RayBlock& block, TangentPath::Sums& sums) const {
+template <int M>
+void PictureGradient::trace_film(RayBlock<M>& block, TangentPath::Sums& sums) const {
     block.complete();
     const WavelengthsInDouble many = wavelengths(block.variable);
     path_.trace(block.rays, sums, nullptr, nullptr, if_dispersed(many));
 }
 
-void PictureGradient::trace_outline(OutlineBlock& block, const std::array<double, kRays>& weights,
+template <int M>
+void PictureGradient::trace_outline(const OutlineBlock& block, const double (&weights)[kRays][M],
                                     TangentPath::Sums& sums) const {
     int surfaces[kRays];
-    Vec3d tangents[kRays];
+    Vec3d tangents[M * kRays];
     float variable[kRays];
     for (int i = 0; i < kRays; ++i) {
         surfaces[i] = block.points[i]->surface;
-        tangents[i] = weights[static_cast<std::size_t>(i)] * block.points[i]->tangent;
+        for (int m = 0; m < M; ++m) tangents[M * i + m] = weights[i][m] * block.points[i]->tangent;
         variable[i] = block.lights[i].variable;
     }
     const WavelengthsInDouble many = wavelengths(variable);
-    path_.trace(block.rays, sums, surfaces, tangents, if_dispersed(many));
+    TangentRays<kRays, M> rays;
+    static_cast<LensRays<double, kRays>&>(rays) = block.rays;
+    path_.trace(rays, sums, surfaces, tangents, if_dispersed(many));
 }
 
 std::vector<float> PictureGradient::picture(const GradientSamples& samples, const KeepGoing& keep_going) {
@@ -137,17 +140,16 @@ std::vector<float> PictureGradient::picture(const GradientSamples& samples, cons
     return film.sum();
 }
 
-/// Sums of tangents in reverse mode, with the film samples that wait to be traced.
-struct PictureGradient::ReverseSums {
-    AdjointFilm film;
-    TangentPath::Sums sums;
-    RayBlock block;
-    double by_stop = 0, by_rims = 0;
-};
-
 std::vector<double> PictureGradient::reverse(const float* adjoint, const float* control, const GradientSamples& samples,
                                              const KeepGoing& keep_going) {
     const std::vector<float> of_control = adjoint_of_control(adjoint, control);
+    const AdjointFilm film{settings_.filter, width(), height(), adjoint, control ? of_control.data() : nullptr};
+    return control ? reverse_along<2>(film, samples, keep_going) : reverse_along<1>(film, samples, keep_going);
+}
+
+template <int M>
+std::vector<double> PictureGradient::reverse_along(const AdjointFilm& film, const GradientSamples& samples,
+                                                   const KeepGoing& keep_going) {
     // Sums of the rows, which are added in order, make the result independent of the number of threads.
     std::vector<std::vector<double>> rows(static_cast<std::size_t>(view_.height));
     std::vector<std::int64_t> unexplained(rows.size()), edges(rows.size());
@@ -156,45 +158,39 @@ std::vector<double> PictureGradient::reverse(const float* adjoint, const float* 
         [&](int row_index) {
             const auto at = static_cast<std::size_t>(row_index);
             Row row(*this, samples, row_index);
-            std::vector<ReverseSums> all;
-            all.push_back({{settings_.filter, width(), height(), adjoint, nullptr}, TangentPath::Sums(path_), {}});
-            if (control)
-                all.push_back(
-                    {{settings_.filter, width(), height(), adjoint, of_control.data()}, TangentPath::Sums(path_), {}});
+            TangentPath::Sums sums(path_);
+            RayBlock<M> block;
             const double scale = exposure_per_sample(samples.spp);
             if (samples.interior)
                 row.for_film_samples([&](int lane, const SampleLight& sample, const FilmSamples<kLanes>& from) {
-                    for (ReverseSums& part : all) {
-                        const Vec3f slopes = part.film(sample.pixel, sample.light, sample.weight);
-                        if (slopes.y == 0 && slopes.z == 0) continue;
-                        RayBlock& block = part.block;
-                        block.add(sample, outline_.view(), from.origin[lane], from.direction[lane]);
-                        block.set_tangent(block.count - 1, {scale * per_mm.x * static_cast<double>(slopes.y),
-                                                            scale * per_mm.y * static_cast<double>(slopes.z)});
-                        if (block.count == kRays) trace_film(block, part.sums), block.count = 0;
+                    const std::array<Vec3f, M> changes = film.changes<M>(sample.pixel, sample.light, sample.weight);
+                    if (!has_gradient(changes)) return;
+                    block.add(sample, outline_.view(), from.origin[lane], from.direction[lane]);
+                    for (int m = 0; m < M; ++m) {
+                        const Vec3f change = changes[static_cast<std::size_t>(m)];
+                        set_film_tangent(block.rays, block.count - 1, m,
+                                         {scale * per_mm.x * static_cast<double>(change.y),
+                                          scale * per_mm.y * static_cast<double>(change.z)});
                     }
+                    if (block.count == kRays) trace_film(block, sums), block.count = 0;
                 });
-            for (ReverseSums& part : all)
-                if (part.block.count > 0) trace_film(part.block, part.sums);
+            if (block.count > 0) trace_film(block, sums);
             const double outline_scale = exposure_per_sample(samples.outline_spp);
+            double by_stop = 0, by_rims = 0;
             if (samples.boundary)
                 row.for_outline_samples([&](const OutlineBlock& outline) {
-                    for (ReverseSums& part : all) {
-                        std::array<double, kRays> weights{};
-                        for (std::size_t i = 0; i < static_cast<std::size_t>(outline.count); ++i) {
-                            const SampleLight& light = outline.lights[i];
-                            const Vec3f value = part.film(light.pixel, light.light, light.weight);
-                            weights[i] = outline_scale * static_cast<double>(value.x);
-                            part.by_stop += weights[i] * outline.points[i]->stop_rate;
-                            part.by_rims += weights[i] * outline.points[i]->rim_rate;
-                        }
-                        OutlineBlock traced = outline;
-                        trace_outline(traced, weights, part.sums);
+                    double weights[kRays][M] = {};
+                    for (int i = 0; i < outline.count; ++i) {
+                        const SampleLight& light = outline.lights[i];
+                        const std::array<Vec3f, M> changes = film.changes<M>(light.pixel, light.light, light.weight);
+                        for (int m = 0; m < M; ++m)
+                            weights[i][m] = outline_scale * static_cast<double>(changes[static_cast<std::size_t>(m)].x);
+                        by_stop += weights[i][0] * outline.points[i]->stop_rate;
+                        by_rims += weights[i][0] * outline.points[i]->rim_rate;
                     }
+                    trace_outline(outline, weights, sums);
                 });
-            CameraDerivatives derivatives = path_.derivatives(all.front().sums);
-            if (control) derivatives.by_pose = path_.derivatives(all.back().sums).by_pose;
-            rows[at] = by_all_numbers(derivatives, all.front().by_stop, all.front().by_rims);
+            rows[at] = by_all_numbers(path_.derivatives(sums), by_stop, by_rims);
             unexplained[at] = row.unexplained, edges[at] = row.edge_count;
         },
         keep_going);
@@ -244,7 +240,7 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
             Row row(*this, samples, row_index);
             auto& rows = film.rows_of(row_index);
             TangentPath::Sums sums(path_);
-            RayBlock block;
+            RayBlock<1> block;
             // Adds light to the derivative picture k. `factor`: factor of each pixel's light, and of its control
             // variate.
             const auto add = [&](const SampleLight& sample, std::size_t k, auto&& factor) {
@@ -259,8 +255,11 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
             };
             const double scale = exposure_per_sample(samples.spp);
             const auto trace_block = [&] {
-                RayBlock other = block;
-                for (int i = 0; i < block.count; ++i) block.set_tangent(i, {1, 0}), other.set_tangent(i, {0, 1});
+                RayBlock<1> other = block;
+                for (int i = 0; i < block.count; ++i) {
+                    set_film_tangent(block.rays, i, 0, {1, 0});
+                    set_film_tangent(other.rays, i, 0, {0, 1});
+                }
                 sums.clear();
                 trace_film(block, sums);
                 // Motions of the film points along x and y, for each direction.
@@ -287,9 +286,9 @@ std::vector<float> PictureGradient::forward(const std::vector<double>& direction
             if (block.count > 0) trace_block();
             const double outline_scale = exposure_per_sample(samples.outline_spp);
             if (samples.boundary)
-                row.for_outline_samples([&](OutlineBlock& outline) {
-                    std::array<double, kRays> weights;
-                    weights.fill(1);
+                row.for_outline_samples([&](const OutlineBlock& outline) {
+                    double weights[kRays][1];
+                    for (auto& weight : weights) weight[0] = 1;
                     sums.clear();
                     trace_outline(outline, weights, sums);
                     for (std::size_t k = 0; k < count; ++k) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "../render/gradients/camera_gradient.hpp"
+#include "../render/gradients/filtered_film.hpp"
 
 namespace realcam {
 
@@ -27,9 +28,9 @@ private:
     class Row;
     class FilmRows;
     struct SampleLight;
+    template <int M>
     struct RayBlock;
     struct OutlineBlock;
-    struct ReverseSums;
     struct Direction;
     struct Motions;
     struct EmbreeParts;
@@ -42,9 +43,15 @@ private:
     /// Returns the address of `many`, or null if the camera has no dispersion.
     const WavelengthsInDouble* if_dispersed(const WavelengthsInDouble& many) const;
     /// Traces a block of rays from the film with their tangents.
-    void trace_film(RayBlock& block, TangentPath::Sums& sums) const;
-    /// Traces a block of rays on the outline, with the rims' tangents times the weight of each ray.
-    void trace_outline(OutlineBlock& block, const std::array<double, kRays>& weights, TangentPath::Sums& sums) const;
+    template <int M>
+    void trace_film(RayBlock<M>& block, TangentPath::Sums& sums) const;
+    /// Traces a block of rays on the outline, with the rims' tangents times the M weights of each ray.
+    template <int M>
+    void trace_outline(const OutlineBlock& block, const double (&weights)[kRays][M], TangentPath::Sums& sums) const;
+    /// Returns the result of `reverse` by M tangents of each ray: 2 if the film has a control variate, else 1.
+    template <int M>
+    std::vector<double> reverse_along(const AdjointFilm& film, const GradientSamples& samples,
+                                      const KeepGoing& keep_going);
 
     std::unique_ptr<const EmbreeParts> embree_;
     CameraView view_{};

@@ -151,24 +151,26 @@ __device__ std::int64_t sample_index(int step) {
     return thread_index() / kWarpSize * kSamplesPerWarp + step * kWarpSize + threadIdx.x % kWarpSize;
 }
 
+template <int M>
 __global__ void __launch_bounds__(kBlockSize, kLensBlocks)
     film_tangents_of(const __grid_constant__ GradientJob job, const AdjointFilm adjoint, Vec2d per_mm, int count,
                      const GradientRay* rays, double* sums) {
     WarpSums warp(job, cleared_sums(job, sums));
     for (int step = 0; step < kSamplesPerThread; ++step) {
         const std::int64_t index = sample_index(step);
-        TangentRays<1> traced = ended_ray(job);
+        TangentRays<1, M> traced = ended_ray<M>(job);
         float variable = 0;
         if (index < count && rays[index].weight > 0.0f) {
             const GradientRay& ray = rays[index];
-            const Vec3f slopes = adjoint(ray.pixel, ray.light, ray.weight);
-            if (slopes.y != 0 || slopes.z != 0) {
+            const std::array<Vec3f, M> changes = adjoint.changes<M>(ray.pixel, ray.light, ray.weight);
+            if (has_gradient(changes)) {
                 variable = ray.variable;
                 set_film_ray(job.outline, {ray.film.x, ray.film.y, 0}, {ray.cosines.x, ray.cosines.y, 0}, traced, 0);
-                // By the light's direction cosines at the film, which are opposite to the ray's.
-                traced.direction_tangent.set(
-                    0, tangent_of_cosines(traced.direction[0], {-per_mm.x * static_cast<double>(slopes.y),
-                                                                -per_mm.y * static_cast<double>(slopes.z)}));
+                REALCAM_UNROLL
+                for (int m = 0; m < M; ++m)
+                    set_film_tangent(
+                        traced, 0, m,
+                        {per_mm.x * static_cast<double>(changes[m].y), per_mm.y * static_cast<double>(changes[m].z)});
             }
         }
         if (__all_sync(0xffffffffu, traced.status[0] != 0)) continue;
@@ -179,34 +181,36 @@ __global__ void __launch_bounds__(kBlockSize, kLensBlocks)
     }
 }
 
+template <int M>
 __global__ void __launch_bounds__(kBlockSize, kLensBlocks)
     outline_tangents_of(const __grid_constant__ GradientJob job, const AdjointFilm adjoint, double scale, int count,
                         const OutlineEdge* edges, const GradientRay* rays, double* sums) {
     WarpSums warp(job, cleared_sums(job, sums));
     for (int step = 0; step < kSamplesPerThread; ++step) {
         const std::int64_t index = sample_index(step);
-        TangentRays<1> traced = ended_ray(job);
+        TangentRays<1, M> traced = ended_ray<M>(job);
         float variable = 0;
         int start[1] = {0};
-        Vec3d tangent[1] = {{0, 0, 0}};
+        Vec3d tangents[M] = {};
         double by_stop = 0, by_rims = 0;
         if (index < count && rays[index].weight > 0.0f) {
             const OutlineEdge& edge = edges[index];
             const GradientRay& ray = rays[index];
             const auto density = static_cast<float>(edge.weight);
-            const Vec3f value = adjoint(ray.pixel, density * ray.light, density);
-            const double factor = scale * static_cast<double>(value.x);
+            const std::array<Vec3f, M> changes = adjoint.changes<M>(ray.pixel, density * ray.light, density);
             const DirectionLine lines[1] = {edge.line};
             const double t[1] = {edge.point.t};
-            traced = job.outline.start(lines, t);
+            static_cast<LensRays<double, 1>&>(traced) = job.outline.start(lines, t);
             variable = ray.variable;
             start[0] = edge.point.surface;
-            tangent[0] = factor * edge.point.tangent;
+            REALCAM_UNROLL
+            for (int m = 0; m < M; ++m) tangents[m] = scale * static_cast<double>(changes[m].x) * edge.point.tangent;
+            const double factor = scale * static_cast<double>(changes[0].x);
             by_stop = factor * edge.point.stop_rate, by_rims = factor * edge.point.rim_rate;
         }
         if (__all_sync(0xffffffffu, traced.status[0] != 0)) continue;
         const RayWavelength wavelength = wavelength_of(job, variable);
-        trace_tangents_to_scene(job.tangents, [&](int k) { return wavelength.from(k); }, traced, start, tangent, warp);
+        trace_tangents_to_scene(job.tangents, [&](int k) { return wavelength.from(k); }, traced, start, tangents, warp);
         warp.finish_ray(traced, by_stop, by_rims);
     }
 }
@@ -274,14 +278,15 @@ void launch_trace_light(const GradientJob& job, const GradientPart& part, std::i
 
 void launch_film_tangents(const GradientJob& job, const AdjointFilm& adjoint, Vec2d per_mm, int count,
                           const GradientRay* rays, double* sums, cudaStream_t stream) {
-    film_tangents_of<<<tangent_blocks(count), kBlockSize, 0, stream>>>(job, adjoint, per_mm, count, rays, sums);
+    const auto kernel = adjoint.control ? film_tangents_of<2> : film_tangents_of<1>;
+    kernel<<<tangent_blocks(count), kBlockSize, 0, stream>>>(job, adjoint, per_mm, count, rays, sums);
     check_cuda(cudaGetLastError(), "starting to trace tangents");
 }
 
 void launch_outline_tangents(const GradientJob& job, const AdjointFilm& adjoint, double scale, int count,
                              const OutlineEdge* edges, const GradientRay* rays, double* sums, cudaStream_t stream) {
-    outline_tangents_of<<<tangent_blocks(count), kBlockSize, 0, stream>>>(job, adjoint, scale, count, edges, rays,
-                                                                          sums);
+    const auto kernel = adjoint.control ? outline_tangents_of<2> : outline_tangents_of<1>;
+    kernel<<<tangent_blocks(count), kBlockSize, 0, stream>>>(job, adjoint, scale, count, edges, rays, sums);
     check_cuda(cudaGetLastError(), "starting to trace tangents");
 }
 

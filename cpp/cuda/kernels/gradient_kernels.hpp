@@ -73,6 +73,8 @@ void launch_find_outline(const GradientJob& job, const GradientPart& part, Outli
 void launch_trace_light(const GradientJob& job, const GradientPart& part, std::int64_t ray_count, GradientRay* rays,
                         cudaStream_t stream);
 
+// If the adjoint film has a control variate, the sums of the pose are those of the light less the control variate.
+
 /// Sets the sums of each warp (gradient_warps) to the interior term. `per_mm`: light's factor times pixels per mm.
 void launch_film_tangents(const GradientJob& job, const AdjointFilm& adjoint, Vec2d per_mm, int count,
                           const GradientRay* rays, double* sums, cudaStream_t stream);

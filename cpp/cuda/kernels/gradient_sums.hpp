@@ -40,7 +40,7 @@ struct VisitCrossings {
     __device__ NoFreeforms forms(int) const { return {}; }
     __device__ Lanes<double, 1>& pose(int) { return unused_pose; }
     __device__ void finish(int k, const TangentRays<1>& rays) {
-        if (k != kStartOnFilm) visit(k, rays.origin, rays.direction, rays.origin_tangent);
+        if (k != kStartOnFilm) visit(k, rays.origin, rays.direction, rays.tangents[0].origin);
     }
 };
 
@@ -55,7 +55,7 @@ public:
     __device__ AdjointStep<1>& film() { return step_; }
     __device__ NoFreeforms forms(int) const { return {}; }
     __device__ Lanes<double, 1>& pose(int i) { return pose_[i]; }
-    __device__ void finish(int k, const TangentRays<1>& rays) {
+    __device__ void finish(int k, const LensRays<double, 1>& rays) {
         constexpr std::uint32_t kFrame = (1u << kFrameNumbers) - 1;
         const std::uint32_t used = k == kStartOnFilm ? kFrame : job_.used_numbers[k];
         const bool alive = rays.status[0] == 0;
@@ -66,7 +66,7 @@ public:
         }
     }
     /// Adds the pose, the stop and the rims, and returns to the first sum.
-    __device__ void finish_ray(const TangentRays<1>& rays, double by_stop, double by_rims) {
+    __device__ void finish_ray(const LensRays<double, 1>& rays, double by_stop, double by_rims) {
         const bool alive = rays.status[0] == 0;
         REALCAM_UNROLL
         for (int i = 0; i < 6; ++i) {
@@ -93,10 +93,11 @@ private:
 };
 
 /// A ray that has ended, for threads that have none.
-__device__ inline TangentRays<1> ended_ray(const GradientJob& job) {
-    TangentRays<1> rays;
+template <int M>
+__device__ TangentRays<1, M> ended_ray(const GradientJob& job) {
+    TangentRays<1, M> rays;
     set_film_ray(job.outline, {0, 0, 0}, {0, 0, 0}, rays, 0);
-    rays.direction_tangent.set(0, {0, 0, 0});
+    for (RayTangents<1>& tangents : rays.tangents) tangents.direction.set(0, {0, 0, 0});
     rays.status[0] = static_cast<int>(RayStatus::vignetted);
     return rays;
 }

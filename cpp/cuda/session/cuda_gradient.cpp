@@ -79,9 +79,9 @@ public:
         device_->picture.download(sums.data(), stream);
         stream.wait("copying a picture from it");
         const double scale = exposure_per_sample(samples.spp);
-        std::vector<float> exposure;
-        for (const FilteredPixel& pixel : sums)
-            for (const double sum : pixel.sums) exposure.push_back(static_cast<float>(scale * sum));
+        std::vector<float> exposure(3 * pixels);
+        for (std::size_t i = 0; i < pixels; ++i)
+            for (std::size_t k = 0; k < 3; ++k) exposure[3 * i + k] = static_cast<float>(scale * sums[i].sums[k]);
         return exposure;
     }
 
@@ -94,23 +94,22 @@ public:
         device_->adjoint.upload(adjoint, 3 * pixels, stream);
         device_->control.upload(of_control.data(), of_control.size(), stream);
         const auto sum_count = static_cast<std::size_t>(device_->job().sum_count);
-        const std::size_t films = control ? 2 : 1;
-        device_->totals.resize(films * sum_count);
+        const AdjointFilm film{settings_.filter, width(), height(), device_->adjoint.data(),
+                               control ? device_->control.data() : nullptr};
+        device_->totals.resize(sum_count);
         device_->totals.clear(stream);
         device_->unexplained.resize(1);
         device_->unexplained.clear(stream);
-        if (samples.interior) add_interior(films, samples, keep_going);
-        if (samples.boundary) add_boundary(films, samples, keep_going);
-        std::vector<double> totals(films * sum_count);
+        if (samples.interior) add_interior(film, samples, keep_going);
+        if (samples.boundary) add_boundary(film, samples, keep_going);
+        std::vector<double> totals(sum_count);
         unsigned long long unexplained = 0;
         device_->totals.download(totals.data(), stream);
         device_->unexplained.download(&unexplained, stream);
         stream.wait("copying derivatives from it");
         unexplained_ = static_cast<std::int64_t>(unexplained);
         edges_ = samples.boundary ? sample_count(samples.outline_spp) : 0;
-        CameraDerivatives derivatives = derivatives_of(totals.data());
-        if (control) derivatives.by_pose = derivatives_of(totals.data() + sum_count).by_pose;
-        return by_all_numbers(derivatives, totals[sum_count - 2], totals[sum_count - 1]);
+        return by_all_numbers(derivatives_of(totals.data()), totals[sum_count - 2], totals[sum_count - 1]);
     }
 
     std::vector<float> forward(const std::vector<double>&, const float*, const GradientSamples&,
@@ -142,19 +141,19 @@ private:
         if (!uniform) launch_trace_light(device_->job(), part, part.count, device_->rays.data(), device_->stream());
     }
 
-    // Adds a term to the totals. `films`: 1, or 2 with the sums that the control variate has reduced behind the others.
-    void add_interior(std::size_t films, const GradientSamples& samples, const KeepGoing& keep_going) {
+    // Adds a term to the totals.
+    void add_interior(const AdjointFilm& film, const GradientSamples& samples, const KeepGoing& keep_going) {
         const double scale = exposure_per_sample(samples.spp);
         const Vec2d per_mm = pixels_per_mm(), factors = {scale * per_mm.x, scale * per_mm.y};
         for_parts(samples.seed, samples.spp, samples.pairs, kFilmLaunch, keep_going, [&](const GradientPart& part) {
             sample_film(part, samples.uniform);
-            add_sums(films, part.count, [&](const AdjointFilm& film, double* sums) {
+            add_sums(part.count, [&](double* sums) {
                 launch_film_tangents(device_->job(), film, factors, part.count, device_->rays.data(), sums,
                                      device_->stream());
             });
         });
     }
-    void add_boundary(std::size_t films, const GradientSamples& samples, const KeepGoing& keep_going) {
+    void add_boundary(const AdjointFilm& film, const GradientSamples& samples, const KeepGoing& keep_going) {
         const double scale = exposure_per_sample(samples.outline_spp);
         const std::uint32_t seed = samples.outline_seed();
         for_parts(seed, samples.outline_spp, false, kOutlineLaunch, keep_going, [&](const GradientPart& part) {
@@ -165,26 +164,21 @@ private:
                                 device_->unexplained.data(), device_->stream());
             if (!samples.uniform)
                 launch_trace_light(device_->job(), part, points, device_->rays.data(), device_->stream());
-            add_sums(films, points, [&](const AdjointFilm& film, double* sums) {
+            add_sums(points, [&](double* sums) {
                 launch_outline_tangents(device_->job(), film, scale, points, device_->edges.data(),
                                         device_->rays.data(), sums, device_->stream());
             });
         });
     }
 
-    /// Calls launch(adjoint film, sums of the warps) for `count` samples, and adds these sums to the totals.
+    /// Calls launch(sums of the warps) for `count` samples, and adds these sums to the totals.
     template <class Launch>
-    void add_sums(std::size_t films, int count, Launch&& launch) {
+    void add_sums(int count, Launch&& launch) {
         const GradientJob& job = device_->job();
         const std::int64_t warps = gradient_warps(count);
         device_->sums.resize(static_cast<std::size_t>(warps * job.sum_count));
-        for (std::size_t i = 0; i < films; ++i) {
-            launch(AdjointFilm{settings_.filter, width(), height(), device_->adjoint.data(),
-                               i > 0 ? device_->control.data() : nullptr},
-                   device_->sums.data());
-            launch_add_sums(job.sum_count, warps, device_->sums.data(),
-                            device_->totals.data() + i * static_cast<std::size_t>(job.sum_count), device_->stream());
-        }
+        launch(device_->sums.data());
+        launch_add_sums(job.sum_count, warps, device_->sums.data(), device_->totals.data(), device_->stream());
     }
 
     /// Returns the derivatives that follow from the totals of all rays, in the order of WarpSums; the last two are the

@@ -54,7 +54,7 @@ struct OutlineLens {
             rays.status[i] = exists ? 0 : static_cast<int>(RayStatus::vignetted);
             rays.origin.set(i, {line.film.x, line.film.y, film_distance});
             rays.direction.set(i, along);
-            rays.direction_tangent.set(i, tangent_of_cosines(along, line.step));
+            rays.tangents[0].direction.set(i, tangent_of_cosines(along, line.step));
         }
         return rays;
     }

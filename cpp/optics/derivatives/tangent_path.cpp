@@ -134,7 +134,7 @@ struct AllSums {
     AdjointStep<kLanes>& film() { return to.film; }
     FreeformTangents forms(int k) { return path.forms(k, to.forms[static_cast<std::size_t>(k)].data()); }
     Lanes<double, kLanes>& pose(int i) { return to.pose[i]; }
-    void finish(int k, const TangentPath::Rays& rays) {
+    void finish(int k, const LensRays<double, kLanes>& rays) {
         if (k == kStartOnFilm) return;
         surface(k).origin = rays.origin, surface(k).direction = rays.direction;
     }
@@ -154,13 +154,13 @@ struct CrossingRecord {
     Lanes<double, kLanes>& pose(int) { return unused_pose; }
     void finish(int k, const TangentPath::Rays& rays) {
         if (k == kStartOnFilm) return;
-        crossings[static_cast<std::size_t>(k)] = {rays.origin, rays.direction, rays.origin_tangent};
+        crossings[static_cast<std::size_t>(k)] = {rays.origin, rays.direction, rays.tangents[0].origin};
     }
 };
 
 /// trace_tangents_to_scene with the wavelengths of TangentPath::trace.
-template <class Sums>
-inline void trace_all(const TangentLens& lens, const WavelengthsInDouble* wavelengths, TangentPath::Rays& rays,
+template <int M, class Sums>
+inline void trace_all(const TangentLens& lens, const WavelengthsInDouble* wavelengths, TangentRays<kLanes, M>& rays,
                       const int* starts, const Vec3d* rim_tangents, Sums& sums) {
     if (wavelengths)
         trace_tangents_to_scene(
@@ -175,6 +175,13 @@ inline void trace_all(const TangentLens& lens, const WavelengthsInDouble* wavele
 // target_clones compiles only inlined code for each instruction set, hence `flatten`.
 __attribute__((flatten)) REALCAM_CLONES void TangentPath::trace(Rays& rays, Sums& sums, const int* starts,
                                                                 const Vec3d* rim_tangents,
+                                                                const WavelengthsInDouble* wavelengths) const {
+    AllSums all{*this, sums};
+    trace_all(view(), wavelengths, rays, starts, rim_tangents, all);
+}
+
+__attribute__((flatten)) REALCAM_CLONES void TangentPath::trace(TangentRays<kLanes, 2>& rays, Sums& sums,
+                                                                const int* starts, const Vec3d* rim_tangents,
                                                                 const WavelengthsInDouble* wavelengths) const {
     AllSums all{*this, sums};
     trace_all(view(), wavelengths, rays, starts, rim_tangents, all);

@@ -68,6 +68,10 @@ public:
     /// wavelengths at the surfaces, in the order of the trace; null: all rays have the wavelength of the constructor.
     void trace(Rays& rays, Sums& sums, const int* starts = nullptr, const Vec3d* rim_tangents = nullptr,
                const WavelengthsInDouble* wavelengths = nullptr) const;
+    /// Traces rays with two tangents in the same way. The pose's sums are those of the second, all others those of the
+    /// first. `rim_tangents`: two of each lane, side by side.
+    void trace(TangentRays<kLanes, 2>& rays, Sums& sums, const int* starts = nullptr,
+               const Vec3d* rim_tangents = nullptr, const WavelengthsInDouble* wavelengths = nullptr) const;
 
     /// Rays behind a surface, in its frame, and tangents of their points on it.
     struct Crossing {

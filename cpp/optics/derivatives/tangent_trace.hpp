@@ -14,15 +14,23 @@ namespace REALCAM_NAMESPACE {
 // front of and behind the surface.
 //
 // So one ray that is traced from the film, with its derivative (tangent) along a direction w of q, yields -w . dH/dq =
-// w . dx by all numbers of the camera. Nothing of the ray must be stored.
+// w . dx by all numbers of the camera. Nothing of the ray must be stored. A ray that has a second tangent yields the
+// derivatives by the camera's pose along another direction.
 
 /// Index of the film as the start of rays; that of the last surface, whose rim they meet first, is 0.
 inline constexpr int kStartOnFilm = -1;
 
-/// N rays with their derivatives along one direction in the space of rays, in the frame of the current surface.
+/// Derivatives of the origins and optical directions of N rays along one direction in the space of rays.
 template <int N>
+struct RayTangents {
+    Vec3Lanes<double, N> origin, direction;
+};
+
+/// N rays with M tangents each, in the frame of the current surface. The derivatives by the camera's pose are those
+/// along the last tangent, and all others those along the first.
+template <int N, int M = 1>
 struct TangentRays : LensRays<double, N> {
-    Vec3Lanes<double, N> origin_tangent, direction_tangent;
+    RayTangents<N> tangents[M];
 };
 
 /// Tangent of an optical direction whose x and y change by w, and whose length does not change.
@@ -42,37 +50,43 @@ REALCAM_INLINE void add_start(Vec3d at, Vec3d direction_tangent, AdjointStep<N>&
     step.add(kFrameZ, lane, at.z * direction_tangent);
 }
 
-/// Computes the tangent of one ray behind a surface from that in front of it, and adds the contributions of the
+/// Computes the tangents of one ray behind a surface from those in front of it, and adds the contributions of the
 /// surface's frame and numbers, and of the medium in front of it, to `step`. `o`, `p`: the ray in front of the surface;
-/// `rays` holds the ray behind it and its tangent in front of it, both in the surface's frame. `index_squared`: that of
-/// SurfaceView, in front of the surface.
+/// `rays` holds the ray behind it and its tangents in front of it, both in the surface's frame. `index_squared`: that
+/// of SurfaceView, in front of the surface.
 ///
 /// The direction behind a surface is p' = p + k G, with the gradient G of the surface. Because |p| and |p'| are the
 /// refractive indices, which the tangent does not change, dk = -k (dp . G + p' . dG) / (p' . G).
-template <int N, class SurfacePoint>
-REALCAM_INLINE void push_tangent(const SurfacePoint& point, double index_squared, Vec3d o, Vec3d p,
-                                 TangentRays<N>& rays, AdjointStep<N>& step, int lane) {
-    const Vec3d at = rays.origin[lane], behind = rays.direction[lane], tangent = rays.direction_tangent[lane];
+template <int N, int M, class SurfacePoint>
+REALCAM_INLINE void push_tangents(const SurfacePoint& point, double index_squared, Vec3d o, Vec3d p,
+                                  TangentRays<N, M>& rays, AdjointStep<N>& step, int lane) {
+    const Vec3d at = rays.origin[lane], behind = rays.direction[lane];
     const Vec3d gradient = point.gradient(), bend = behind - p;
     const double t = dot(at - o, p) / dot(p, p);
-    const Vec3d moved = rays.origin_tangent[lane] + t * tangent;
-    const double t_tangent = -dot(gradient, moved) / dot(gradient, p);
-    const Vec3d at_tangent = moved + t_tangent * p;
-    const Vec3d gradient_tangent = point.point_adjoint(at_tangent);  // the second derivatives are symmetric
     const double along = dot(behind, gradient), strength = dot(bend, gradient) / dot(gradient, gradient);
-    // At the critical angle the derivative is infinite; it is replaced by 0.
-    const double strength_tangent =
-        select(along != 0, -strength * (dot(tangent, gradient) + dot(behind, gradient_tangent)) / along, 0.0);
-    const Vec3d bend_tangent = strength_tangent * gradient + strength * gradient_tangent;
-    rays.origin_tangent.set(lane, at_tangent);
-    rays.direction_tangent.set(lane, tangent + bend_tangent);
-    step.add(kFrameOrigin, lane, bend_tangent);
-    step.add(kFrameX, lane, at_tangent.x * bend + at.x * bend_tangent);
-    step.add(kFrameY, lane, at_tangent.y * bend + at.y * bend_tangent);
-    step.add(kFrameZ, lane, at_tangent.z * bend + at.z * bend_tangent);
-    // H by n is the length n t. The index of the ray's wavelength may differ from that of the view.
-    step.add(kIndexSquared, lane, -0.5 * t_tangent * std::sqrt(dot(p, p) / index_squared));
-    point.add_numbers(-strength * at_tangent, strength_tangent, step, lane);
+    REALCAM_UNROLL
+    for (int m = 0; m < M; ++m) {
+        RayTangents<N>& tangents = rays.tangents[m];
+        const Vec3d tangent = tangents.direction[lane];
+        const Vec3d moved = tangents.origin[lane] + t * tangent;
+        const double t_tangent = -dot(gradient, moved) / dot(gradient, p);
+        const Vec3d at_tangent = moved + t_tangent * p;
+        const Vec3d gradient_tangent = point.point_adjoint(at_tangent);  // the second derivatives are symmetric
+        // At the critical angle the derivative is infinite; it is replaced by 0.
+        const double strength_tangent =
+            select(along != 0, -strength * (dot(tangent, gradient) + dot(behind, gradient_tangent)) / along, 0.0);
+        const Vec3d bend_tangent = strength_tangent * gradient + strength * gradient_tangent;
+        tangents.origin.set(lane, at_tangent);
+        tangents.direction.set(lane, tangent + bend_tangent);
+        if (m > 0) continue;
+        step.add(kFrameOrigin, lane, bend_tangent);
+        step.add(kFrameX, lane, at_tangent.x * bend + at.x * bend_tangent);
+        step.add(kFrameY, lane, at_tangent.y * bend + at.y * bend_tangent);
+        step.add(kFrameZ, lane, at_tangent.z * bend + at.z * bend_tangent);
+        // H by n is the length n t. The index of the ray's wavelength may differ from that of the view.
+        step.add(kIndexSquared, lane, -0.5 * t_tangent * std::sqrt(dot(p, p) / index_squared));
+        point.add_numbers(-strength * at_tangent, strength_tangent, step, lane);
+    }
 }
 
 /// ManyWavelengths for rays in double precision.
@@ -134,10 +148,10 @@ REALCAM_INLINE void for_surface_points(const TangentSurface& surface, const Vec3
     }
 }
 
-/// Replaces rays that have missed a surface, or were totally reflected, by one that passes, without a tangent. `o`,
+/// Replaces rays that have missed a surface, or were totally reflected, by one that passes, without tangents. `o`,
 /// `p`: rays in front of the surface. Returns false if no ray passes.
-template <int N>
-REALCAM_HD inline bool replace_ended(TangentRays<N>& rays, Vec3Lanes<double, N>& o, Vec3Lanes<double, N>& p) {
+template <int N, int M>
+REALCAM_HD inline bool replace_ended(TangentRays<N, M>& rays, Vec3Lanes<double, N>& o, Vec3Lanes<double, N>& p) {
     int passing = 0;
     while (passing < N && rays.status[passing] != 0) ++passing;
     if (passing == N) return false;
@@ -145,8 +159,8 @@ REALCAM_HD inline bool replace_ended(TangentRays<N>& rays, Vec3Lanes<double, N>&
         if (rays.status[i] == 0) continue;
         rays.origin.set(i, rays.origin[passing]);
         rays.direction.set(i, rays.direction[passing]);
-        rays.origin_tangent.set(i, {0, 0, 0});
-        rays.direction_tangent.set(i, {0, 0, 0});
+        for (RayTangents<N>& tangents : rays.tangents)
+            tangents.origin.set(i, {0, 0, 0}), tangents.direction.set(i, {0, 0, 0});
         rays.status[i] = 0;
         o.set(i, o[passing]);
         p.set(i, p[passing]);
@@ -166,20 +180,30 @@ REALCAM_HD inline void cross_surface(const TangentSurface& surface, const Media&
     trace_lens<kind>(one, rays, NoRecord{}, media);
 }
 
+/// Converts tangents to another frame.
+template <int N, int M>
+REALCAM_INLINE void turn_tangents(const FrameChange<double>& frame, TangentRays<N, M>& rays) {
+    REALCAM_UNROLL
+    for (int m = 0; m < M; ++m) {
+        RayTangents<N>& tangents = rays.tangents[m];
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) {
+            tangents.origin.set(i, frame.direction(tangents.origin[i]));
+            tangents.direction.set(i, frame.direction(tangents.direction[i]));
+        }
+    }
+}
+
 /// Traces N rays and their tangents through one surface, which blocks none of them, and adds the contributions of its
 /// numbers to `step`. `media`: policy of trace_lens for this surface. `forms`: NoFreeforms or FreeformTangents.
-template <int N, class Media, class Forms>
+template <int N, int M, class Media, class Forms>
 REALCAM_HD inline void trace_tangents(const TangentSurface& surface, const Media& media, const Forms& forms,
-                                      TangentRays<N>& rays, AdjointStep<N>& step) {
+                                      TangentRays<N, M>& rays, AdjointStep<N>& step) {
     const FrameChange<double> frame = surface.before;
     Vec3Lanes<double, N> o, p;
     if (frame.changes) {
         change_frame(frame, static_cast<LensRays<double, N>&>(rays));
-        REALCAM_LANES
-        for (int i = 0; i < N; ++i) {
-            rays.origin_tangent.set(i, frame.direction(rays.origin_tangent[i]));
-            rays.direction_tangent.set(i, frame.direction(rays.direction_tangent[i]));
-        }
+        turn_tangents(frame, rays);
     }
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
@@ -194,26 +218,27 @@ REALCAM_HD inline void trace_tangents(const TangentSurface& surface, const Media
     for (int i = 0; i < N; ++i) ended |= rays.status[i];
     if (ended != 0 && !replace_ended(rays, o, p)) return;
     for_surface_points(surface, rays.origin, forms, [&](const auto& point, int i) {
-        push_tangent(point, surface.view.index_squared, o[i], p[i], rays, step, i);
+        push_tangents(point, surface.view.index_squared, o[i], p[i], rays, step, i);
     });
 }
 
-/// Traces rays and their tangents from the film to the scene, as TangentPath::trace says. `media(k)`: policy of
-/// trace_lens for surface k. The contributions to -dH go to `sums`, which has
+/// Traces rays and their tangents from the film to the scene, as TangentPath::trace says. `rim_tangents`: M for each
+/// lane, whose tangents lie side by side. `media(k)`: policy of trace_lens for surface k. The contributions to -dH go
+/// to `sums`, which has
 ///   surface(k), film()   AdjointStep<N>& of a surface, and of the start on the film
 ///   forms(k)             NoFreeforms or FreeformTangents
 ///   pose(i)              Lanes<double, N>& of the camera's translation and rotation, six in all
 ///   finish(k, rays)      called when surface k (kStartOnFilm: the start) is done, with the rays behind it
-template <int N, class MediaAt, class Sums>
-REALCAM_HD inline void trace_tangents_to_scene(const TangentLens& lens, MediaAt&& media, TangentRays<N>& rays,
+template <int N, int M, class MediaAt, class Sums>
+REALCAM_HD inline void trace_tangents_to_scene(const TangentLens& lens, MediaAt&& media, TangentRays<N, M>& rays,
                                                const int* starts, const Vec3d* rim_tangents, Sums& sums) {
     for (int i = 0; i < N; ++i) {
-        if (!starts) {
-            add_start({rays.origin.x[i], rays.origin.y[i], 0}, rays.direction_tangent[i], sums.film(), i);
-        } else {
-            rays.direction_tangent.set(i, {0, 0, 0});
+        if (!starts) add_start({rays.origin.x[i], rays.origin.y[i], 0}, rays.tangents[0].direction[i], sums.film(), i);
+        REALCAM_UNROLL
+        for (int m = 0; m < M; ++m) {
+            if (starts) rays.tangents[m].direction.set(i, {0, 0, 0});
+            rays.tangents[m].origin.set(i, {0, 0, 0});
         }
-        rays.origin_tangent.set(i, {0, 0, 0});
     }
     sums.finish(kStartOnFilm, rays);
     for (int k = 0; k < lens.count; ++k) {
@@ -224,8 +249,9 @@ REALCAM_HD inline void trace_tangents_to_scene(const TangentLens& lens, MediaAt&
         if (starts)
             for_surface_points(surface, rays.origin, forms, [&](const auto& point, int i) {
                 if (starts[i] != k) return;
-                const Vec3d tangent = rim_tangents[i];
-                rays.direction_tangent.set(i, tangent);
+                REALCAM_UNROLL
+                for (int m = 0; m < M; ++m) rays.tangents[m].direction.set(i, rim_tangents[M * i + m]);
+                const Vec3d tangent = rim_tangents[M * i];
                 add_start(rays.origin[i], tangent, step, i);
                 // The rim moves along z with the surface's sag there.
                 point.add_numbers(Vec3d{0, 0, 0}, tangent.z / point.gradient().z, step, i);
@@ -233,13 +259,12 @@ REALCAM_HD inline void trace_tangents_to_scene(const TangentLens& lens, MediaAt&
         sums.finish(k, rays);
     }
     change_frame(lens.exit, static_cast<LensRays<double, N>&>(rays));
+    turn_tangents(lens.exit, rays);
+    const RayTangents<N>& of_pose = rays.tangents[M - 1];
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        const Vec3d o = rays.origin[i], p = rays.direction[i];
-        const Vec3d o_tangent = lens.exit.direction(rays.origin_tangent[i]),
-                    p_tangent = lens.exit.direction(rays.direction_tangent[i]);
-        rays.origin_tangent.set(i, o_tangent);
-        rays.direction_tangent.set(i, p_tangent);
+        const Vec3d o = rays.origin[i], p = rays.direction[i], o_tangent = of_pose.origin[i],
+                    p_tangent = of_pose.direction[i];
         const Vec3d moment = cross(o_tangent, p) + cross(o, p_tangent);
         sums.pose(0)[i] += p_tangent.x, sums.pose(1)[i] += p_tangent.y, sums.pose(2)[i] += p_tangent.z;
         sums.pose(3)[i] += moment.x, sums.pose(4)[i] += moment.y, sums.pose(5)[i] += moment.z;

@@ -63,11 +63,12 @@ CameraGradient::CameraGradient(const Assembly& scene, const Camera& camera, cons
 }
 
 std::vector<float> CameraGradient::adjoint_of_control(const float* adjoint, const float* control) const {
-    std::vector<float> sums;
-    if (!control) return sums;
-    const auto pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
-    for (std::size_t i = 0; i < 3 * pixels; i += 3)
-        sums.push_back(adjoint[i] * control[i] + adjoint[i + 1] * control[i + 1] + adjoint[i + 2] * control[i + 2]);
+    if (!control) return {};
+    std::vector<float> sums(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
+    for (float& sum : sums) {
+        sum = adjoint[0] * control[0] + adjoint[1] * control[1] + adjoint[2] * control[2];
+        adjoint += 3, control += 3;
+    }
     return sums;
 }
 

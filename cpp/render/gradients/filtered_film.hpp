@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+
 #include "../../camera/film/pixel_filter.hpp"
 #include "../../math/color.hpp"
 #include "../../math/vec3.hpp"
@@ -31,19 +33,29 @@ struct AdjointFilm {
     const float* control;  ///< height x width: sum over the channels of the adjoint times a control variate of the
                            ///< radiance; null: none
 
-    /// Returns the derivative of the function by the light of a sample at a film point, and the gradient of that
-    /// derivative along columns and rows. `light`: the sample's weight times its radiance; the control variate has the
-    /// same `weight`.
-    REALCAM_INLINE Vec3f operator()(Vec2f at, Color light, float weight) const {
-        Vec3f sum = {0, 0, 0};
+    /// Returns the first-order change of the function by a sample at a film point, and the gradient of that change
+    /// along columns and rows. `light`: the sample's weight times its radiance. If M is 2, the second element is that
+    /// of the light less the control variate, which has the same `weight`, and must exist.
+    template <int M>
+    REALCAM_INLINE std::array<Vec3f, M> changes(Vec2f at, Color light, float weight) const {
+        std::array<Vec3f, M> sums{};
         for_filtered_pixels(filter, width, height, at, [&](int pixel, float value, Vec2f slope) {
             const float* a = adjoint + 3 * pixel;
-            float of_light = a[0] * light.r + a[1] * light.g + a[2] * light.b;
-            if (control) of_light -= weight * control[pixel];
-            sum += of_light * Vec3f{value, slope.x, slope.y};
+            const float of_light = a[0] * light.r + a[1] * light.g + a[2] * light.b;
+            const Vec3f of_filter = {value, slope.x, slope.y};
+            sums[0] += of_light * of_filter;
+            if constexpr (M == 2) sums[1] += (of_light - weight * control[pixel]) * of_filter;
         });
-        return sum;
+        return sums;
     }
 };
+
+/// True if one of AdjointFilm::changes depends on the film point.
+template <std::size_t M>
+REALCAM_INLINE bool has_gradient(const std::array<Vec3f, M>& changes) {
+    for (const Vec3f& change : changes)
+        if (change.y != 0 || change.z != 0) return true;
+    return false;
+}
 
 }  // namespace REALCAM_NAMESPACE

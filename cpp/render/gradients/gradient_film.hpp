@@ -74,12 +74,18 @@ REALCAM_INLINE PupilLine pupil_line(const CameraView& camera, Vec2f film, float 
 
 /// Ray of the film in the double precision of its tangent, for one lane.
 template <int N>
-REALCAM_INLINE void set_film_ray(const OutlineLens& lens, Vec3f origin, Vec3f direction, TangentRays<N>& rays,
+REALCAM_INLINE void set_film_ray(const OutlineLens& lens, Vec3f origin, Vec3f direction, LensRays<double, N>& rays,
                                  int lane) {
     const double l = static_cast<double>(direction.x), m = static_cast<double>(direction.y);
     rays.origin.set(lane, {static_cast<double>(origin.x), static_cast<double>(origin.y), lens.film_distance});
     rays.direction.set(lane, {l, m, -std::sqrt(lens.squared_index - l * l - m * m)});
     rays.status[lane] = 0;
+}
+
+/// Sets tangent m of a film ray by the light's direction cosines at the film, which are opposite to the ray's.
+template <int N, int M>
+REALCAM_INLINE void set_film_tangent(TangentRays<N, M>& rays, int lane, int m, Vec2d w) {
+    rays.tangents[m].direction.set(lane, tangent_of_cosines(rays.direction[lane], {-w.x, -w.y}));
 }
 
 /// Stores a ray that grazes a rim in a lane, in render space.

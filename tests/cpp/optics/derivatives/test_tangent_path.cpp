@@ -2,6 +2,7 @@
 // DualPath, which traces the ray from the scene and which test_ray_derivatives.cpp compares with 50 digits. Both are
 // exact but for roundings; 1e-9 of the largest derivative of its kind is far above these and far below any mistake.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -64,11 +65,11 @@ TangentPath::Rays start_rays(const LensSystem& lens, const TestRay& ray, Vec2d w
     for (int i = 0; i < TangentPath::kLanes; ++i) {
         rays.origin.set(i, {ray.x, ray.y, lens.film_distance});
         rays.direction.set(i, {ray.l, ray.m, z});
-        rays.direction_tangent.set(i, {0, 0, 0});
+        rays.tangents[0].direction.set(i, {0, 0, 0});
         rays.status[i] = 0;
     }
     // The light's direction cosines are opposite to the ray's.
-    rays.direction_tangent.set(kLane, {-w.x, -w.y, (ray.l * w.x + ray.m * w.y) / z});
+    rays.tangents[0].direction.set(kLane, {-w.x, -w.y, (ray.l * w.x + ray.m * w.y) / z});
     return rays;
 }
 
@@ -237,7 +238,7 @@ struct SumsOfOneRay {
     AdjointStep<1>& film() { return step; }
     NoFreeforms forms(int) const { return {}; }
     Lanes<double, 1>& pose(int i) { return of_pose[i]; }
-    void finish(int k, const TangentRays<1>&) {
+    void finish(int k, const LensRays<double, 1>&) {
         AdjointStep<TangentPath::kLanes>& sum = k == kStartOnFilm ? to.film : to.surfaces[static_cast<std::size_t>(k)];
         for (int number = 0; number < kSurfaceNumbers; ++number) {
             if (k == kStartOnFilm || (used[static_cast<std::size_t>(k)] >> number & 1u) != 0)
@@ -247,15 +248,16 @@ struct SumsOfOneRay {
     }
 };
 
-/// Traces a lane of a block of rays alone. `start`: see TangentPath::trace; null: on the film.
-CameraDerivatives alone(const TangentPath& path, const TangentPath::Rays& block, const int* start,
+/// Traces a lane of a block of rays alone. `start`, `tangent`: see TangentPath::trace; null: on the film.
+template <int M>
+CameraDerivatives alone(const TangentPath& path, const TangentRays<TangentPath::kLanes, M>& block, const int* start,
                         const Vec3d* tangent) {
     TangentPath::Sums sums(path);
     SumsOfOneRay of_ray{sums, path.numbers_in_use()};
-    TangentRays<1> ray;
+    TangentRays<1, M> ray;
     ray.origin.set(0, block.origin[kLane]);
     ray.direction.set(0, block.direction[kLane]);
-    ray.direction_tangent.set(0, block.direction_tangent[kLane]);
+    for (int m = 0; m < M; ++m) ray.tangents[m].direction.set(0, block.tangents[m].direction[kLane]);
     ray.status[0] = 0;
     trace_tangents_to_scene(path.view(), [](int) { return OneWavelength{}; }, ray, start, tangent, of_ray);
     for (int i = 0; i < 6; ++i) sums.pose[i][0] = of_ray.of_pose[i][0];
@@ -369,6 +371,46 @@ TEST_CASE("a ray that is traced alone, as on GPUs, has the derivatives of a bloc
             }
 }
 
+TEST_CASE("a ray with two tangents has the derivatives by the pose along the second, and all others along the first") {
+    LensSystem tilted = lens_with_film();
+    tilted.surfaces[1].placement = {{0.3, -0.2, 0.1}, {3, -2, 10}, false};
+    for (const LensSystem& lens : {lens_with_film(), tilted})
+        for (const FilmRay& film_ray : kFilmRays) {
+            const TangentPath path(lens, lens.wavelength_nm, all_variables());
+            const TangentPath::Rays starts[2] = {start_rays(lens, film_ray, {0.3, -0.7}),
+                                                 start_rays(lens, film_ray, {-0.4, 0.2})};
+            TangentRays<TangentPath::kLanes, 2> start;
+            static_cast<LensRays<double, TangentPath::kLanes>&>(start) = starts[0];
+            for (int m = 0; m < 2; ++m) start.tangents[m] = starts[m].tangents[0];
+            // `surface`: rim on which the tangents start; null: on the film.
+            const auto check = [&](const int* surface) {
+                std::array<int, TangentPath::kLanes> rims;
+                rims.fill(surface ? *surface : 0);
+                const Vec3d rim_tangents[2] = {{0.6, 0.8, 0.1}, {-0.3, 0.5, 0.2}};
+                CameraDerivatives wanted;
+                for (int m = 1; m >= 0; --m) {
+                    std::array<Vec3d, TangentPath::kLanes> tangents{};
+                    tangents[kLane] = rim_tangents[m];
+                    TangentPath::Rays rays = starts[m];
+                    TangentPath::Sums sums(path);
+                    path.trace(rays, sums, surface ? rims.data() : nullptr, tangents.data());
+                    const CameraDerivatives along = path.derivatives(sums);
+                    if (m == 0) wanted.by_variable = along.by_variable, wanted.by_film = along.by_film;
+                    if (m == 1) wanted.by_pose = along.by_pose;
+                }
+                std::array<Vec3d, 2 * TangentPath::kLanes> tangents{};
+                std::copy_n(rim_tangents, 2, tangents.begin() + 2 * kLane);
+                TangentRays<TangentPath::kLanes, 2> rays = start;
+                TangentPath::Sums sums(path);
+                path.trace(rays, sums, surface ? rims.data() : nullptr, tangents.data());
+                check_equal(path.derivatives(sums), wanted);
+                check_equal(alone(path, start, surface, rim_tangents), wanted);
+            };
+            check(nullptr);
+            for (int k = 0; k < path.surface_count(); ++k) check(&k);
+        }
+}
+
 TEST_CASE("points of the pupil's outline that are searched on one line are those of a block of lines") {
     const LensSystem lens = stopped_down(io::read_lens("double-gauss-50mm"), 4);
     const TangentPath path(lens, lens.wavelength_nm, {});
@@ -406,7 +448,7 @@ TEST_CASE("points of the pupil's outline that are searched on one line are those
                 trace_tangents_to_scene(
                     path.view(), [](int) { return OneWavelength{}; }, rays, nullptr, nullptr, visited);
                 for (int k = 0; const TangentRays<1>& behind : visited.rays)
-                    visit(k++, behind.origin, behind.direction, behind.origin_tangent);
+                    visit(k++, behind.origin, behind.direction, behind.tangents[0].origin);
             },
             own);
         for (int n = 0; n < OutlineRays::kMostPoints; ++n) {
