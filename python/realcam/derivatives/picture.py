@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from .._core import Camera, InputError, Lens, RenderSettings, Scene
-from ..settings import settings_of
+from ..settings import MAX_SPP, settings_of, whole_number
 from .dual_array import Doubles
 from .variable import Variable, checked
 
@@ -122,7 +122,8 @@ def render_gradient(
         raise InputError("the derivative by exposure_time_s needs a scene in which nothing moves during the exposure")
     spp = _spp_of(final)
     # The noise of few samples would be that of the control variate.
-    control_count = max(1, spp // 16, min(4, spp // 4)) if control_spp is None else control_spp
+    default_control = max(1, spp // 16, min(4, spp // 4))
+    control_count = default_control if control_spp is None else whole_number("control_spp", control_spp, 0, MAX_SPP)
     samples: dict[str, Any] = {
         "seed": final.seed,
         "spp": spp,

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import InputError
+from ..settings import whole_number
 
 Doubles = NDArray[np.float64]
 
@@ -104,12 +105,10 @@ def fit_pictures(
         raise InputError("start and scale must be (P,), and scales positive")
     _finite("start and scale", np.array([values, units]), (2, max(len(values), 1)))
     height, width = wanted.shape[1:3]
-    if not blocks or not all(
-        isinstance(b, (int, np.integer)) and b > 0 and height % b == width % b == 0 for b in blocks
-    ):
-        raise InputError(f"blocks must divide pictures of {width} x {height} pixels; found {blocks}")
-    if steps < 1:
-        raise InputError(f"steps must be at least 1; found {steps}")
+    sizes = np.asarray(blocks)
+    if sizes.ndim != 1 or sizes.dtype.kind not in "iu" or any(b < 1 or height % b or width % b for b in sizes):
+        raise InputError(f"blocks must divide pictures of {width} x {height} pixels; found {blocks!r:.60}")
+    steps, seed = whole_number("steps", steps, 1), whole_number("seed", seed, 0)
     means, deviations = (values, np.full(len(values), np.inf)) if prior is None else _pair("prior", prior, values)
     if not (deviations > 0).all() or not np.isfinite(means).all():
         raise InputError("prior must have finite means, and positive standard deviations")
