@@ -144,6 +144,11 @@ def render_gradient(
     return pictures
 
 
+def are_distinct(parameters: Sequence[Parameter]) -> bool:
+    """True if no parameter occurs twice. Bounds do not distinguish variables."""
+    return len({p if isinstance(p, str) else p.as_tuple() for p in parameters}) == len(parameters)
+
+
 def final_settings(settings: RenderSettings | None, changes: _SettingsKwargs) -> RenderSettings:
     """The settings of a derivative. Raises InputError."""
     final = settings_of(settings, {"filter": "tent", **changes} if settings is None else changes)
@@ -169,8 +174,7 @@ def _numbers_of(camera: Camera, parameters: Sequence[Direction]) -> _Numbers:
     lens = camera.lens
     if not parameters:
         raise InputError(f"parameters must have at least one Variable or name: {', '.join(PARAMETERS)}")
-    single = [p for p in parameters if not isinstance(p, Mapping)]
-    if len({p if isinstance(p, str) else p.as_tuple() for p in single}) < len(single):
+    if not are_distinct([p for p in parameters if not isinstance(p, Mapping)]):
         raise InputError("parameters must be distinct")
     # Rates of variables of the lens, and of the numbers behind them, for each parameter.
     rows: list[tuple[dict[_Key, float], dict[int, float]]] = []

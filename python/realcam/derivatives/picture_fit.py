@@ -6,12 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .._core import InputError
 from ..settings import whole_number
-
-Doubles = NDArray[np.float64]
+from .dual_array import Doubles
 
 LONGEST = 2.0  # step, in units of the values' scale
 SHORTEST = 0.1  # step, in standard deviations of the fit
@@ -200,7 +199,7 @@ def _finite(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Doubles:
 
 def _pair(name: str, pair: tuple[ArrayLike, ArrayLike], values: Doubles) -> tuple[Doubles, Doubles]:
     """Returns two arrays of numbers for each value, (P,). Raises InputError."""
-    arrays = [np.asarray(part, float) for part in pair]
+    arrays = [np.asarray(part, float) for part in pair] if np.iterable(pair) else []
     if len(arrays) != 2 or any(array.shape not in ((), values.shape) for array in arrays):
         raise InputError(f"{name} must be two numbers or arrays ({len(values)},)")
     first, second = (np.broadcast_to(array, values.shape) for array in arrays)

@@ -166,6 +166,8 @@ def test_focus_and_yaw_are_found() -> None:
         ({"steps": 2.5}, "steps is 2.5; expected a whole number"),
         ({"seed": -1}, "seed is -1; expected a whole number of 0 or more"),
         ({"prior": (np.zeros(3), [1.0, 0.0, 1.0])}, "positive standard deviations"),
+        ({"prior": 1.0}, "prior must be two numbers or arrays"),
+        ({"bounds": 1.0}, "bounds must be two numbers or arrays"),
         ({"prior": (np.zeros(2), np.ones(2))}, "prior must be two numbers or arrays"),
         ({"bounds": (np.ones(3), -np.ones(3))}, "start must lie within bounds"),
         ({"bounds": (0.1, 1.0)}, "start must lie within bounds"),
