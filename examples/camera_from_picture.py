@@ -116,7 +116,11 @@ def main() -> None:
         errors.append(error)
         ratio = np.sqrt(error @ information @ error / len(error))
         worst = np.abs(error / bound).max()
-        print(f"start {number}: error / bound {ratio:.2f}, worst {worst:.2f}; chi^2 {fit.chi_square:.2f}", flush=True)
+        print(
+            f"start {number}: error / bound {ratio:.2f}, worst {worst:.2f}; chi^2 {fit.chi_square:.2f}, "
+            f"remaining step {fit.remaining_step:.1f}",
+            flush=True,
+        )
     spread = np.sqrt(np.mean(np.square(errors), 0))
     for name, one_bound, one_error in zip(PARAMETERS, bound, spread, strict=True):
         print(

@@ -239,10 +239,31 @@ Camera calibrated_camera(const ShotRequest& request) {
     return camera;
 }
 
-/// Changes focus distances that are measured to the entrance pupil of the lens to those to the film.
-void measure_focus_to_film(ShotRequest& request, const LensSystem& lens) {
+/// Distance from the entrance pupil to the film when the shutter opens, m, of a request whose focus distances are
+/// measured to the entrance pupil. `camera`: with the first lens.
+double opening_pupil_to_film_m(const ShotRequest& request, const Camera& camera) {
+    CameraKey key = request.opening_key();
+    const std::optional<double> focus_m = std::exchange(key.focus_m, {});
+    const double distance_m = focus_m ? *focus_m : request.view.focus_distance_m.value_or(kInfinity);
+    try {
+        const LensSystem lens = with_key(camera, key).lens;
+        double pupil_m = pupil_to_film_m(lens), before_m = kInfinity;
+        // Focusing moves the pupil by about the square of focal length / distance of a change of the distance.
+        for (int i = 0; i < 20 && !(std::fabs(pupil_m - before_m) < 1e-9); ++i)
+            before_m = std::exchange(pupil_m, pupil_to_film_m(focused(lens, 1000 * (distance_m + pupil_m))));
+        return pupil_m;
+    } catch (const InputError&) {
+        check_keys(request, camera);  // throws with the position of the keyframe
+        throw;
+    }
+}
+
+/// Changes focus distances that are measured to the entrance pupil of the lens to those to the film. The pupil is that
+/// of the opening lens, in focus, which set_view puts at the origin of the stage's camera: the film keeps its position
+/// through focus pulls and cuts.
+void measure_focus_to_film(ShotRequest& request, const Camera& camera) {
     if (!request.view_focus_is_to_pupil && !request.key_focus_is_to_pupil) return;
-    const double pupil_m = pupil_to_film_m(lens);
+    const double pupil_m = opening_pupil_to_film_m(request, camera);
     const auto add_pupil = [&](std::optional<double>& focus_m) {
         if (focus_m) *focus_m += pupil_m;
     };
@@ -255,12 +276,12 @@ void measure_focus_to_film(ShotRequest& request, const LensSystem& lens) {
 
 Camera camera_of(ShotRequest& request) {
     Camera camera = request.calibration.file.empty() ? lens_camera(request) : calibrated_camera(request);
-    measure_focus_to_film(request, camera.lens);
     camera.model = request.model;
     camera.iso = request.iso;
     camera.shutter = request.shutter;
     if (request.exposure_time_s) camera.exposure_time_s = *request.exposure_time_s;
     validate(camera);
+    measure_focus_to_film(request, camera);
     Camera in_focus = camera;
     if (request.view.focus_distance_m)
         in_focus.lens = focused(std::move(in_focus.lens), 1000 * *request.view.focus_distance_m);

@@ -14,7 +14,7 @@ from .._core import Camera, InputError, Lens, RenderSettings, Scene
 from ..render import render
 from ..vision.rig import pose_of
 from .dual_array import Doubles
-from .picture import PARAMETERS, Floats, Parameter, final_settings, render_gradient, ring_rates
+from .picture import PARAMETERS, Floats, Parameter, are_distinct, final_settings, render_gradient, ring_rates
 from .variable import SETTABLE, Variable, check_surface_exists, with_values
 
 if TYPE_CHECKING:
@@ -33,7 +33,8 @@ _RIMS = "rim_scale"
 class CameraParameters:
     """A camera whose parameters, as in rc.render_gradient, have values.
 
-    parameters: names of rc.render_gradient except film tilts, and Variables that Variable.set supports. Their values:
+    parameters: names of rc.render_gradient except film tilts, focal_length_mm and exposure_time_s, and Variables that
+      Variable.set supports. Their values:
       right_m, up_m, backward_m: translation along the axes of `camera`, which has 0;
       pitch_deg, yaw_deg, roll_deg: rotation vector along the same axes;
       film_shift_right_mm, film_shift_up_mm, focus_distance_m, f_number: themselves, with the rings of `camera`;
@@ -59,7 +60,7 @@ class CameraParameters:
                     if parameter in PARAMETERS
                     else f"unknown parameter {parameter!r:.60}; expected a Variable or one of {', '.join(settable)}"
                 )
-        if len({p if isinstance(p, str) else p.as_tuple() for p in listed}) < max(len(listed), 1):
+        if not listed or not are_distinct(listed):
             raise InputError("parameters must be distinct, and at least one")
         object.__setattr__(self, "camera", camera)
         object.__setattr__(self, "parameters", listed)

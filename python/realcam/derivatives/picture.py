@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from .._core import Camera, InputError, Lens, RenderSettings, Scene
-from ..settings import settings_of
+from ..settings import MAX_SPP, settings_of, whole_number
 from .dual_array import Doubles
 from .variable import Variable, checked
 
@@ -122,7 +122,8 @@ def render_gradient(
         raise InputError("the derivative by exposure_time_s needs a scene in which nothing moves during the exposure")
     spp = _spp_of(final)
     # The noise of few samples would be that of the control variate.
-    control_count = max(1, spp // 16, min(4, spp // 4)) if control_spp is None else control_spp
+    default_control = max(1, spp // 16, min(4, spp // 4))
+    control_count = default_control if control_spp is None else whole_number("control_spp", control_spp, 0, MAX_SPP)
     samples: dict[str, Any] = {
         "seed": final.seed,
         "spp": spp,
@@ -141,6 +142,11 @@ def render_gradient(
     if picture is not None:
         pictures += np.multiply.outer(numbers.growth, picture)
     return pictures
+
+
+def are_distinct(parameters: Sequence[Parameter]) -> bool:
+    """True if no parameter occurs twice. Bounds do not distinguish variables."""
+    return len({p if isinstance(p, str) else p.as_tuple() for p in parameters}) == len(parameters)
 
 
 def final_settings(settings: RenderSettings | None, changes: _SettingsKwargs) -> RenderSettings:
@@ -168,8 +174,7 @@ def _numbers_of(camera: Camera, parameters: Sequence[Direction]) -> _Numbers:
     lens = camera.lens
     if not parameters:
         raise InputError(f"parameters must have at least one Variable or name: {', '.join(PARAMETERS)}")
-    single = [p for p in parameters if not isinstance(p, Mapping)]
-    if len({p if isinstance(p, str) else p.as_tuple() for p in single}) < len(single):
+    if not are_distinct([p for p in parameters if not isinstance(p, Mapping)]):
         raise InputError("parameters must be distinct")
     # Rates of variables of the lens, and of the numbers behind them, for each parameter.
     rows: list[tuple[dict[_Key, float], dict[int, float]]] = []

@@ -6,14 +6,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .._core import InputError
-
-Doubles = NDArray[np.float64]
+from ..settings import whole_number
+from .dual_array import Doubles
 
 LONGEST = 2.0  # step, in units of the values' scale
-SHORTEST = 0.1  # step, in standard deviations
+SHORTEST = 0.1  # step, in standard deviations of the fit
+CONVERGED = 1.0  # longest remaining step of a fit that has converged, in standard deviations of the fit
 LEAST_INFORMATION = 1e-12  # along an axis, of the values in units of their scale
 
 
@@ -26,12 +27,28 @@ class PictureFit:
     Standard deviations along axes of which neither pictures nor prior say anything are 1e6 of the scale.
     chi_square: mean square of the residuals of the finest level, in units of their noise. evaluations: number of
     rendered sets of pictures.
+    remaining_step: length of the undamped Gauss-Newton step from `values`, at the finest level, in standard deviations:
+    the square root of step^T information step (the Newton decrement of Boyd and Vandenberghe, Convex Optimization,
+    2004, 9.5.1). Axes without information do not count, nor do values that a bound holds. message: why the search
+    ended. The search itself ends at remaining steps of 0.1, which noise of derivatives or renderings can prevent.
     """
 
     values: Doubles
     covariance: Doubles
     chi_square: float
     evaluations: int
+    remaining_step: float
+    message: str
+
+    @property
+    def converged(self) -> bool:
+        """True if the remaining step is shorter than one standard deviation.
+
+        The values then differ from those of the nearest minimum by less than their uncertainty, as far as the pictures
+        are linear in them. Noise of derivatives lengthens the remaining step. Another minimum is not detected: see
+        chi_square.
+        """
+        return self.remaining_step < CONVERGED
 
     @property
     def errors(self) -> Doubles:
@@ -71,7 +88,8 @@ def fit_pictures(
     observed, variance: pictures and the variance of their pixels' noise, (K, H, W, C). start: (P,). scale: (P,),
     changes of the values that matter equally. prior: mean and standard deviation of the values, (P,), inf where there
     is none. bounds: of the values. blocks: sizes of the blocks of pixels whose means are compared, from coarse to fine,
-    which must divide H and W; coarse pictures tolerate a start that is further away. steps: most steps with each.
+    which must divide H and W; coarse pictures tolerate a start that is further away. steps: most steps with each. A fit
+    whose steps do not suffice is returned, too: PictureFit.converged is False then.
 
     The information matrix is the product of two independent estimates of the derivatives, because the noise of one,
     squared, would be taken for information (which is why scipy's least_squares is not used).
@@ -86,12 +104,10 @@ def fit_pictures(
         raise InputError("start and scale must be (P,), and scales positive")
     _finite("start and scale", np.array([values, units]), (2, max(len(values), 1)))
     height, width = wanted.shape[1:3]
-    if not blocks or not all(
-        isinstance(b, (int, np.integer)) and b > 0 and height % b == width % b == 0 for b in blocks
-    ):
-        raise InputError(f"blocks must divide pictures of {width} x {height} pixels; found {blocks}")
-    if steps < 1:
-        raise InputError(f"steps must be at least 1; found {steps}")
+    sizes = np.asarray(blocks)
+    if sizes.ndim != 1 or sizes.dtype.kind not in "iu" or any(b < 1 or height % b or width % b for b in sizes):
+        raise InputError(f"blocks must divide pictures of {width} x {height} pixels; found {blocks!r:.60}")
+    steps, seed = whole_number("steps", steps, 1), whole_number("seed", seed, 0)
     means, deviations = (values, np.full(len(values), np.inf)) if prior is None else _pair("prior", prior, values)
     if not (deviations > 0).all() or not np.isfinite(means).all():
         raise InputError("prior must have finite means, and positive standard deviations")
@@ -100,7 +116,7 @@ def fit_pictures(
         raise InputError("start must lie within bounds")
     of_prior = units / deviations
     evaluations = 0
-    for block in blocks:
+    for level, block in enumerate(blocks, start=1):
         noise = np.sqrt(_block_means(spread, block)) / block
 
         def residuals(at: Doubles, block: int = block, noise: Doubles = noise) -> Doubles:
@@ -122,30 +138,53 @@ def fit_pictures(
             return np.asarray(np.reshape(found, (len(at), -1)).T * units)
 
         damping, now = 1.0, residuals(values)
-        for _ in range(steps):
+        # After the last step of the finest level, derivatives are computed once more, for the uncertainty of the fit.
+        for step in range(steps + (level == len(blocks))):
             first, second = jacobian(values), jacobian(values)
             # Noise can make small eigenvalues negative.
             strengths, axes = np.linalg.eigh((first.T @ second + second.T @ first) / 2)
             information = axes @ np.diag(np.maximum(strengths, 0)) @ axes.T + np.diag(of_prior**2)
-            strengths, axes = np.linalg.eigh(information)
             by_pixels, by_prior = now[: -len(values)], now[-len(values) :]
-            slope = axes.T @ ((first + second).T @ by_pixels / 2 + of_prior * by_prior)
-            is_better, change = False, np.zeros_like(slope)
+            gradient = (first + second).T @ by_pixels / 2 + of_prior * by_prior
+            free = ~((values <= low) & (gradient > 0) | (values >= high) & (gradient < 0))
+            strengths, axes = np.linalg.eigh(information[np.ix_(free, free)])
+            slope = axes.T @ gradient[free]
+            remaining = _newton_decrement(strengths, slope)
+            if remaining < SHORTEST:
+                message = f"The next step is shorter than {SHORTEST:g} standard deviations."
+                break
+            if step == steps:
+                message = f"All steps are used up: {steps} with blocks of {block} x {block} pixels."
+                break
+            is_better = is_rejected = False
             for _ in range(20):
                 change = slope / (strengths + damping)
-                if (strengths * change**2).sum() < SHORTEST**2:
+                if is_rejected and (strengths * change**2).sum() < SHORTEST**2:
                     break
                 if np.linalg.norm(change) < LONGEST:
-                    there = np.clip(values - units * (axes @ change), low, high)
-                    then = residuals(there)
+                    there = values.copy()
+                    there[free] -= units[free] * (axes @ change)
+                    then = residuals(np.clip(there, low, high, out=there))
                     if is_better := bool(then @ then < now @ now):
                         values, now, damping = there, then, damping / 10
                         break
+                    is_rejected = True
                 damping *= 10
             if not is_better:
+                message = f"No step lowers the sum of squares with blocks of {block} x {block} pixels."
                 break
+    strengths, axes = np.linalg.eigh(information)
     covariance = (axes / np.maximum(strengths, LEAST_INFORMATION)) @ axes.T * np.outer(units, units)
-    return PictureFit(values, covariance, float((now[: -len(values)] ** 2).mean()), evaluations)
+    chi_square = float((now[: -len(values)] ** 2).mean())
+    return PictureFit(values, covariance, chi_square, evaluations, remaining, message)
+
+
+def _newton_decrement(strengths: Doubles, slope: Doubles) -> float:
+    """Length of a Gauss-Newton step, in standard deviations: from the information along its principal axes, and half
+    the derivatives of the sum of squares along them."""
+    # Rounding leaves some 1e-15 of the largest eigenvalue along axes without information.
+    known = strengths > LEAST_INFORMATION * max(1.0, strengths.max(initial=0.0))
+    return float(np.sqrt((slope[known] ** 2 / strengths[known]).sum()))
 
 
 def _finite(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Doubles:
@@ -160,7 +199,7 @@ def _finite(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Doubles:
 
 def _pair(name: str, pair: tuple[ArrayLike, ArrayLike], values: Doubles) -> tuple[Doubles, Doubles]:
     """Returns two arrays of numbers for each value, (P,). Raises InputError."""
-    arrays = [np.asarray(part, float) for part in pair]
+    arrays = [np.asarray(part, float) for part in pair] if np.iterable(pair) else []
     if len(arrays) != 2 or any(array.shape not in ((), values.shape) for array in arrays):
         raise InputError(f"{name} must be two numbers or arrays ({len(values)},)")
     first, second = (np.broadcast_to(array, values.shape) for array in arrays)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import Camera, InputError, RenderSettings, Scene
+from ..settings import MAX_SEED, MAX_SPP, whole_number
 from .camera_parameters import CameraParameters
 from .picture import Parameter, final_settings
 
@@ -40,9 +41,13 @@ def torch_render(
     spp) of gradient_seed (None: derived from seed), are independent of those of the picture: the gradient of any loss
     that is at most quadratic in the picture is unbiased. Camera i has seed + i and gradient_seed + i. Second
     derivatives are not supported.
-    Raises InputError for parameters that cannot be set, and for tensors of other types and shapes or on other devices
-    than the CPU; ImportError without torch.
+    Raises InputError for parameters that cannot be set, for counts and seeds out of range, and for tensors of other
+    types and shapes or on other devices than the CPU; ImportError without torch.
     """
+    if gradient_spp is not None:
+        gradient_spp = whole_number("gradient_spp", gradient_spp, 1, MAX_SPP)
+    if gradient_seed is not None:
+        gradient_seed = whole_number("gradient_seed", gradient_seed, 0, MAX_SEED)
     try:
         import torch
     except ImportError as error:

@@ -19,12 +19,12 @@ from .._core import InputError
 from ..archive import owner_in_file, packed, read_archive, read_regular, write_archive
 from ..files import write_whole
 from ..film_part import FilmPart
+from ..settings import MAX_SPP
 from .engine import Engine
 from .units import MAX_SIDE, Digest, Round, ShotRecord, Unit, checked_tile
 
 FORMAT = 5
 JOB_FILE = "job.json"
-MAX_SPP = 1 << 24
 _FOLDERS = ("shots", "scenes", "units", "rounds")
 _MAX_BYTES = 1 << 26  # of job.json
 

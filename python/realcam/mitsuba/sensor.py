@@ -19,7 +19,8 @@ PARAMETERS = ("focus_distance_m", "f_number", "film_width_mm", "film_height_mm",
 FARTHEST = float(np.finfo(np.float32).max)  # maximum length of a ray that passes the lens
 
 
-class RealcamSensor(mi.Sensor):  # type: ignore[misc]
+# Without Mitsuba, which is optional, its classes have no types.
+class RealcamSensor(mi.Sensor):  # type: ignore[misc, unused-ignore]
     """Sensor plugin; see docs/mitsuba.md. Frames: lens, in mm; camera, in Mitsuba's convention with x to the left and z
     forwards from the film centre; scene."""
 
@@ -43,7 +44,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         self.f_number = mi.Float(lens.f_number)
         self.film_width_mm, self.film_height_mm = mi.Float(width), mi.Float(height)
         self.exposure_time_s = mi.Float(self.shutter_open_time())
-        self.is_dispersive = mi.is_spectral
+        self.is_dispersive = bool(mi.is_spectral)
         self.set_lens(lens)
 
     def set_lens(self, lens: Lens) -> None:
@@ -121,7 +122,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         uv, is_inside = self.pixel_of(film_point)
         active = passed & is_inside & (solid_angle > 0) & active
 
-        result = mi.DirectionSample3f()
+        result: Any = mi.DirectionSample3f()  # Mitsuba's stubs have the types of one variant
         result.p = self.point_in_scene(mi.Point3f(first + vertex))
         connection = result.p - it.p
         result.dist = dr.norm(connection)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens, _ToleranceEvaluator
+from ..settings import whole_number
 from .compensators import Chosen, Compensator, chosen
 from .figures import CopyFigures, Doubles
 from .sensitivities import Sensitivity, inverse_sensitivities, sensitivities
@@ -209,10 +210,8 @@ def tolerance_study(
     limits = Tolerances.grade(tolerances) if isinstance(tolerances, str) else tolerances
     if not isinstance(limits, Tolerances):
         raise InputError("tolerances must be a realcam.Tolerances, or the name of a grade")
-    if isinstance(copies, bool) or not isinstance(copies, int) or not 1 <= copies <= MAX_COPIES:
-        raise InputError(f"copies is {copies!r:.40}; expected a whole number from 1 to {MAX_COPIES}")
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise InputError(f"seed is {seed!r:.40}; expected a whole number of 0 or more")
+    copies = whole_number("copies", copies, 1, MAX_COPIES)
+    seed = whole_number("seed", seed, 0)
     if sharpest_by not in ("mtf", "spot"):
         raise InputError(f'sharpest_by: "{sharpest_by!s:.40}" is unknown; expected mtf or spot')
     if not 2 <= rings <= 100:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import realcam as rc
 from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
 
 from .test_picture_gradient import corner_camera, stripes
 
@@ -48,9 +49,47 @@ def test_a_linear_problem_has_the_solution_of_linear_least_squares(has_prior: bo
     information = rows @ rows.T + np.diag(weights)
     wanted = np.linalg.solve(information, rows @ (observed / np.sqrt(variance)).ravel() + weights * mean)
     np.testing.assert_allclose(fit.covariance, np.linalg.inv(information), rtol=1e-9)
-    # The search ends when a step is a tenth of the standard deviation, and damping shortens steps by a tenth at most.
+    # The search ends when the next step, which leads to the solution of a linear problem, is a tenth of the standard
+    # deviation.
     off = fit.values - wanted
-    assert off @ information @ off < 0.1**2
+    assert fit.remaining_step == pytest.approx(np.sqrt(off @ information @ off), rel=1e-6)
+    assert fit.remaining_step < 0.1
+    assert fit.converged
+    assert fit.message.startswith("The next step is shorter")
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-3])
+def test_a_fit_whose_steps_do_not_suffice_has_not_converged(scale: float) -> None:
+    """A step is at most two scales long, and a weakly determined value must not end the search by its damping."""
+    matrix, observed, variance = linear_problem()
+    arguments = arguments_of(matrix, observed, variance) | {"start": np.full(3, 9.0), "scale": np.full(3, scale)}
+    fit = rc.fit_pictures(**arguments, steps=2)
+    rows = (matrix / np.sqrt(variance)).reshape(3, -1)
+    off = fit.values - np.linalg.solve(rows @ rows.T, rows @ (observed / np.sqrt(variance)).ravel())
+    assert fit.remaining_step == pytest.approx(np.sqrt(off @ rows @ rows.T @ off), rel=1e-6)
+    assert fit.remaining_step > 10
+    assert not fit.converged
+    assert fit.message == "All steps are used up: 2 with blocks of 1 x 1 pixels."
+
+
+def test_wrong_derivatives_do_not_converge() -> None:
+    matrix, observed, variance = linear_problem()
+    arguments = arguments_of(matrix, observed, variance)
+    fit = rc.fit_pictures(**arguments | {"derivatives_of": lambda values, block, seed: -matrix})
+    assert not fit.converged
+    assert fit.message.startswith("No step lowers the sum of squares")
+
+
+def test_a_bound_holds_a_value_as_in_bounded_least_squares() -> None:
+    matrix, observed, variance = linear_problem()
+    low, high = np.array([-9.0, -1.0, -9.0]), np.array([9.0, 9.0, 0.2])  # the second and the third bound are active
+    fit = rc.fit_pictures(**arguments_of(matrix, observed, variance), bounds=(low, high), steps=30)
+    rows = (matrix / np.sqrt(variance)).reshape(3, -1)
+    wanted = lsq_linear(rows.T, (observed / np.sqrt(variance)).ravel(), (low, high), tol=1e-14).x
+    off = fit.values - wanted
+    assert fit.values[1:].tolist() == [-1.0, 0.2]
+    assert off @ rows @ rows.T @ off < 0.1**2
+    assert fit.converged
 
 
 def test_noise_of_derivatives_does_not_count_as_information() -> None:
@@ -78,7 +117,7 @@ def test_noise_of_derivatives_does_not_count_as_information() -> None:
 
 
 def test_directions_are_sorted_by_what_pictures_leave_open() -> None:
-    fit = rc.PictureFit(np.zeros(2), np.array([[4.0, 0.0], [0.0, 9.0]]), 1.0, 1)
+    fit = rc.PictureFit(np.zeros(2), np.array([[4.0, 0.0], [0.0, 9.0]]), 1.0, 1, 0.0, "")
     sizes, axes = fit.directions([4.0, 3.0])
     np.testing.assert_allclose(sizes, [1.0, 0.5])
     np.testing.assert_allclose(np.abs(axes), [[0, 1], [1, 0]])
@@ -106,6 +145,7 @@ def test_focus_and_yaw_are_found() -> None:
     # A chi-square of two degrees of freedom exceeds 20 once in 20,000 times; the noise of the renderings, a quarter of
     # that of the pictures, is in the margin.
     assert off @ np.linalg.solve(fit.covariance, off) < 20
+    assert fit.converged
     assert np.all(fit.errors < [0.01, 0.05])
 
 
@@ -120,8 +160,14 @@ def test_focus_and_yaw_are_found() -> None:
         ({"start": [], "scale": []}, "start and scale must have shape"),
         ({"blocks": (0,)}, "blocks must divide"),
         ({"blocks": (2.0,)}, "blocks must divide"),
-        ({"steps": 0}, "steps must be at least 1; found 0"),
+        ({"blocks": (True,)}, "blocks must divide"),
+        ({"blocks": 2}, "blocks must divide .* found 2"),
+        ({"steps": 0}, "steps is 0; expected a whole number of 1 or more"),
+        ({"steps": 2.5}, "steps is 2.5; expected a whole number"),
+        ({"seed": -1}, "seed is -1; expected a whole number of 0 or more"),
         ({"prior": (np.zeros(3), [1.0, 0.0, 1.0])}, "positive standard deviations"),
+        ({"prior": 1.0}, "prior must be two numbers or arrays"),
+        ({"bounds": 1.0}, "bounds must be two numbers or arrays"),
         ({"prior": (np.zeros(2), np.ones(2))}, "prior must be two numbers or arrays"),
         ({"bounds": (np.ones(3), -np.ones(3))}, "start must lie within bounds"),
         ({"bounds": (0.1, 1.0)}, "start must lie within bounds"),

@@ -18,6 +18,20 @@ def test_torch_is_asked_for_in_one_line() -> None:
     assert failed.stderr.strip().endswith("realcam.torch_render needs PyTorch: pip install realcam[torch]")
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "limits"),
+    [
+        ("gradient_spp", 0, "from 1 to 16777216"),
+        ("gradient_spp", -1, "from 1 to 16777216"),
+        ("gradient_spp", 2.5, "from 1 to 16777216"),
+        ("gradient_seed", -1, "from 0 to 4294967295"),
+    ],
+)
+def test_wrong_counts_and_seeds_are_refused(name: str, value: float, limits: str) -> None:
+    with pytest.raises(rc.InputError, match=f"^{name} is {value}; expected a whole number {limits}$"):
+        rc.torch_render(stripes(), corner_camera(), {}, **{name: value})
+
+
 torch = pytest.importorskip("torch", reason="torch is an extra")
 
 SETTINGS = {"max_bounces": 0, "spp": 16}

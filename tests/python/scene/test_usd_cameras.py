@@ -83,33 +83,55 @@ def test_rings_over_time_are_interpolated_as_usd_does(tmp_path: Path, focus: str
         assert (focus_m - offset, number) == pytest.approx(expected, rel=2e-3)
 
 
-def test_focus_distance_is_measured_to_the_entrance_pupil_of_the_shots_lens(tmp_path: Path) -> None:
-    """focusDistance is measured from the camera's origin, the entrance pupil of whichever lens the shot has."""
+def test_focus_distance_is_measured_to_the_entrance_pupil_of_the_opening_lens(tmp_path: Path) -> None:
+    """focusDistance is measured from the camera's origin, the entrance pupil of the lens that is mounted when the
+    shutter opens, in focus. The film stays through cuts, so that the plane in focus does, too."""
     path = tmp_path / "stage.usda"
     stage = camera_stage(path)
     prim = stage.GetPrimAtPath("/Main")
     prim.GetAttribute("focusDistance").Set(4.0)
     stage.Save()
-    (tmp_path / "zoom.toml").write_text('format = 1\nscene = "stage.usda"\nlens = "zoom-80-200mm"\nzoom = "200mm"\n')
+
+    def check(camera: rc.Camera) -> None:
+        # The iteration ends when the entrance pupil moves by less than 1e-9 m.
+        assert camera.position[2] - camera.lens.focus_distance_m == pytest.approx(2 - 4, abs=1e-9)
+
+    def check_lens(shot: rc.Shot, lens: rc.Lens) -> None:
+        check(shot.camera)
+        focused = lens.focused(shot.camera.lens.focus_distance_m)
+        pupil_mm = focused.first_order().entrance_pupil_position_mm
+        film_mm = sum(surface.thickness_mm for surface in focused.surfaces[:-1]) + focused.film_distance_mm
+        assert shot.camera.position[2] == pytest.approx(2 + (film_mm - pupil_mm) / 1000, abs=1e-9)
+
+    def shot_file(text: str) -> rc.Shot:
+        (tmp_path / "shot.toml").write_text(f'format = 1\nscene = "stage.usda"\n{text}\n')
+        return rc.Shot.load(tmp_path / "shot.toml", spp=1)
+
+    check_lens(rc.Shot.load(path, spp=1), rc.Lens.load("double-gauss-50mm"))
+    check_lens(rc.Shot.load(path, spp=1, lens="long-800mm"), rc.Lens.load("long-800mm"))
+    check_lens(rc.Shot.load(path, spp=1, lens=rc.Lens.load("tessar-50mm")), rc.Lens.load("tessar-50mm"))
     zoom = rc.Lens.load("zoom-80-200mm")
-
-    def check(shot: rc.Shot, lens: rc.Lens) -> None:
-        pupil_mm = lens.first_order().entrance_pupil_position_mm
-        film_mm = sum(surface.thickness_mm for surface in lens.surfaces[:-1]) + lens.film_distance_mm
-        # Both sides are the same sum in double precision, rounded differently.
-        assert shot.camera.lens.focus_distance_m == pytest.approx(4 + (film_mm - pupil_mm) / 1000, rel=1e-9)
-
-    check(rc.Shot.load(path, spp=1), rc.Lens.load("double-gauss-50mm"))
-    check(rc.Shot.load(path, spp=1, lens="long-800mm"), rc.Lens.load("long-800mm"))
-    check(rc.Shot.load(path, spp=1, lens=rc.Lens.load("tessar-50mm")), rc.Lens.load("tessar-50mm"))
-    check(rc.Shot.load(tmp_path / "zoom.toml", spp=1), zoom.zoomed(zoom.zoom_positions[-1]))
+    check_lens(shot_file('lens = "zoom-80-200mm"\nzoom = "200mm"'), zoom.zoomed(zoom.zoom_positions[-1]))
+    zooming = 'lens = "zoom-80-200mm"\n[[key]]\ntime_s = 0\nfocal_length_mm = 190'
+    check_lens(shot_file(zooming), zoom.zoomed(190.0))
+    cut = '[[key]]\ntime_s = 1\nlens = "long-800mm"'
+    check_lens(shot_file(f"shutter_opens_s = 1.5\n{cut}"), rc.Lens.load("long-800mm"))
+    frames = shot_file(cut).frames([1, 25], frames_per_second=24).values()
+    assert len({frame.camera.lens.name for frame in frames}) == 2
+    for frame in frames:
+        check(frame.camera)
+    with pytest.raises(rc.InputError, match=r"shot.toml:3: .* has no focal lengths"):
+        shot_file("[[key]]\ntime_s = 0\nfocal_length_mm = 50")
     assert rc.Shot.load(path, spp=1, lens="long-800mm", focus_m=7).camera.lens.focus_distance_m == pytest.approx(7)
     prim.CreateAttribute("realcam:lens", Sdf.ValueTypeNames.String).Set("tessar-50mm")
     prim.GetAttribute("focusDistance").Set(4.0, 0)
     prim.GetAttribute("focusDistance").Set(6.0, 24)
     stage.Save()
-    check(rc.Shot.load(path, spp=1), rc.Lens.load("tessar-50mm"))
-    check(rc.Shot.load(path, spp=1, lens="long-800mm"), rc.Lens.load("long-800mm"))
+    check_lens(rc.Shot.load(path, spp=1), rc.Lens.load("tessar-50mm"))
+    check_lens(rc.Shot.load(path, spp=1, lens="long-800mm"), rc.Lens.load("long-800mm"))
+    last = rc.Shot.load(path, spp=1, lens="long-800mm").frames([25], frames_per_second=24)
+    (camera,) = (frame.camera for frame in last.values())
+    assert camera.position[2] - camera.lens.focus_distance_m == pytest.approx(2 - 6, abs=1e-9)
 
 
 def test_realcams_attributes_precede_values_over_time_of_usds_own(tmp_path: Path) -> None:
