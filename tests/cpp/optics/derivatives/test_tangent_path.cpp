@@ -375,7 +375,7 @@ TEST_CASE("a ray with two tangents has the derivatives by the pose along the sec
     LensSystem tilted = lens_with_film();
     tilted.surfaces[1].placement = {{0.3, -0.2, 0.1}, {3, -2, 10}, false};
     for (const LensSystem& lens : {lens_with_film(), tilted})
-        for (const FilmRay& film_ray : kFilmRays) {
+        for (const TestRay& film_ray : kFilmRays) {
             const TangentPath path(lens, lens.wavelength_nm, all_variables());
             const TangentPath::Rays starts[2] = {start_rays(lens, film_ray, {0.3, -0.7}),
                                                  start_rays(lens, film_ray, {-0.4, 0.2})};
