@@ -2,8 +2,8 @@
 #include <utility>
 #include <vector>
 
+#include "optics/coating/coated_surface.hpp"
 #include "optics/prescription/coating.hpp"
-#include "optics/prescription/lens_system.hpp"
 
 namespace realcam::test {
 

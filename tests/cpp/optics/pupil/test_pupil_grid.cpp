@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "doctest/doctest.h"
 #include "math/random.hpp"
 #include "optics/pupil/pupil_grid.hpp"
 #include "pupil_region.hpp"
