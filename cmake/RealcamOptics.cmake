@@ -25,12 +25,11 @@ list(TRANSFORM lane_sources PREPEND ${PROJECT_SOURCE_DIR}/cpp/optics/derivatives
 set_source_files_properties(${lane_sources} PROPERTIES
   COMPILE_OPTIONS "$<$<NOT:$<CONFIG:Debug>>:${REALCAM_KERNEL_FLAGS}>")
 # For this machine alone, one version of them is enough (cpp/optics/derivatives/dual.hpp).
-if(REALCAM_INSTRUCTION_SETS STREQUAL machine AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
-  realcam_widest_instruction_set(widest)
-  if(NOT widest STREQUAL v2)
-    string(REPLACE v3 avx2 clone ${widest})
-    string(REPLACE v4 avx512f clone ${clone})
-    target_compile_definitions(realcam_optics PRIVATE REALCAM_CLONE="${clone}")
+if(REALCAM_INSTRUCTION_SETS STREQUAL machine)
+  if(realcam_instruction_sets STREQUAL v4)
+    target_compile_definitions(realcam_optics PRIVATE REALCAM_CLONE="avx512f")
+  elseif(realcam_instruction_sets STREQUAL v3)
+    target_compile_definitions(realcam_optics PRIVATE REALCAM_CLONE="avx2")
   endif()
 endif()
 target_include_directories(realcam_optics PUBLIC
